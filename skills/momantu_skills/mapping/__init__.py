@@ -1,0 +1,1 @@
+"""Mapping: scans to submaps, submaps to a pose graph, the graph to a floor plan."""

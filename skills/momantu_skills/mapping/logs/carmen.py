@@ -1,0 +1,293 @@
+"""Logs of CARMEN: FLASER, ROBOTLASER1, and RAWLASER1 with ODOM; plain text or gzip.
+
+The columns are those of CARMEN's logger, http://carmen.sourceforge.net/logger_playback.html.
+"""
+
+from __future__ import annotations
+
+import gzip
+import itertools
+import math
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
+from momantu_skills.navigation.map.sensing import Rays
+
+WORDS = ("FLASER", "ROBOTLASER1", "RAWLASER1", "ODOM")
+"""Messages that are read; others, such as PARAM, RLASER and NEFF, say nothing of the map."""
+_MOST_BYTES = 1_000_000_000
+_MOST_BROKEN = 0.02
+"""Largest share of broken lines: a cut-off line or two; more are another kind of file."""
+_NEAREST = 0.02
+"""Shorter ranges are the sensor's own housing, m."""
+_SAME_MOUNT = 0.03
+"""How far the laser's place on the base may vary in a raw log, m or rad."""
+_AT_MOST = 0.005
+"""Share of beams at the greatest range from which on it means that nothing was hit."""
+_JITTER = 2.0
+"""How far back a stamp may lie behind the one before, s."""
+_HALF_TURN = 180.0
+
+
+class _BrokenLineError(Exception):
+    """What is wrong with one line."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reading:
+    """One scan's line. odom: None where the line does not say it; laser: of the same frame."""
+
+    line: int
+    stamp: float
+    ranges: Array
+    angles: Array
+    farthest: float
+    odom: Pose2D | None
+    laser: Pose2D | None
+
+
+def read_carmen(path: Path) -> Log:
+    """The scans of a CARMEN log.
+
+    Raises:
+        LogError: the file cannot be read, is no such log, holds no scans, or is broken.
+    """
+    readings, odometry, broken = _lines(path)
+    if not readings:
+        raise LogError(_nothing(path, broken))
+    lines = len(readings) + len(odometry) + len(broken)
+    if len(broken) > max(1, _MOST_BROKEN * lines):
+        line, why = broken[0]
+        raise LogError.at(path, line, why, f"{len(broken)} of {lines} lines are broken")
+    back = _backwards(path, readings)
+    notes = []
+    if broken:
+        line, why = broken[0]
+        notes.append(f"left out {len(broken)} broken lines, the first is line {line}: {why}")
+    if back:
+        notes.append(f"{back} scans have an earlier stamp than the one before")
+    return Log(tuple(_scans(path, readings, odometry)), tuple(notes))
+
+
+def _lines(
+    path: Path,
+) -> tuple[list[_Reading], list[tuple[float, Pose2D]], list[tuple[int, str]]]:
+    """Scans, odometry by its stamp, and broken lines with what is wrong."""
+    readings: list[_Reading] = []
+    odometry: list[tuple[float, Pose2D]] = []
+    broken: list[tuple[int, str]] = []
+    for number, words in _words(path):
+        try:
+            if words[0] == "ODOM":
+                odometry.append(_odom(words))
+            else:
+                readings.append(_READERS[words[0]](number, words))
+        except _BrokenLineError as error:
+            broken.append((number, str(error)))
+    return readings, odometry, broken
+
+
+def _words(path: Path) -> Iterator[tuple[int, list[str]]]:
+    try:
+        with path.open("rb") as file:
+            zipped = file.read(2) == b"\x1f\x8b"
+            if path.stat().st_size > _MOST_BYTES:
+                raise LogError(f"{path} has more than {_MOST_BYTES} bytes")
+        with gzip.open(path, "rb") if zipped else path.open("rb") as stream:
+            for number, line in enumerate(stream, 1):
+                words = line.decode("ascii", "replace").split()
+                if words and words[0] in WORDS:
+                    yield number, words
+    except (OSError, EOFError, zlib.error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise LogError(f"the log {path} cannot be read: {reason}") from None
+
+
+def _nothing(path: Path, broken: Sequence[tuple[int, str]]) -> str:
+    if broken:
+        line, why = broken[0]
+        return f"{path}: no scan can be read; line {line}: {why}"
+    if path.stat().st_size == 0:
+        return f"{path} is empty"
+    return (
+        f"{path} holds no scans of CARMEN; expected lines that begin with FLASER, ROBOTLASER1 or "
+        "RAWLASER1"
+    )
+
+
+def _numbers(words: Sequence[str], what: str) -> list[float]:
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        wrong = next(word for word in words if not _is_number(word))
+        raise _BrokenLineError(f"{wrong!r} in {what} is not a number") from None
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _pose(words: Sequence[str], what: str) -> Pose2D:
+    numbers = _numbers(words, what)
+    if not all(map(math.isfinite, numbers)):
+        raise _BrokenLineError(f"{what} is {' '.join(words)}, expected finite numbers")
+    return Pose2D(numbers[0], numbers[1], math.remainder(numbers[2], math.tau))
+
+
+def _take(words: Sequence[str], at: int, count: int, what: str) -> list[str]:
+    if count < 0 or len(words) < at + count:
+        raise _BrokenLineError(f"the line ends within {what}")
+    return list(words[at : at + count])
+
+
+def _count(words: Sequence[str], at: int, what: str) -> int:
+    word = _take(words, at, 1, what)[0]
+    if not word.isdigit():
+        raise _BrokenLineError(f"{word!r} is not a number of {what}")
+    return int(word)
+
+
+def _odom(words: Sequence[str]) -> tuple[float, Pose2D]:
+    stamp = _numbers(_take(words, 7, 1, "the stamp"), "the stamp")[0]
+    return stamp, _pose(_take(words, 1, 3, "the pose"), "the pose")
+
+
+def _flaser(line: int, words: Sequence[str]) -> _Reading:
+    count = _count(words, 1, "ranges")
+    ranges = np.array(_numbers(_take(words, 2, count, "the ranges"), "the ranges"))
+    at = 2 + count
+    laser = _pose(_take(words, at, 3, "the laser's pose"), "the laser's pose")
+    odom = _pose(_take(words, at + 3, 3, "the odometry"), "the odometry")
+    stamp = _numbers(_take(words, at + 6, 1, "the stamp"), "the stamp")[0]
+    return _Reading(line, stamp, ranges, _half_turn(count), math.inf, odom, laser)
+
+
+def _half_turn(count: int) -> Array:
+    """Angles of a SICK's beams: 181 and 361 end on both sides, 180 and 360 before the left one."""
+    step = _HALF_TURN / max(1, count - count % 2)
+    return np.asarray(np.radians(-_HALF_TURN / 2 + step * np.arange(count)))
+
+
+def _laser_head(words: Sequence[str]) -> tuple[int, Array, Array, float]:
+    """The index after the remissions, the ranges, their angles, and the greatest range."""
+    start, _, step, farthest = _numbers(_take(words, 2, 4, "the laser's angles"), "the angles")
+    count = _count(words, 8, "ranges")
+    ranges = np.array(_numbers(_take(words, 9, count, "the ranges"), "the ranges"))
+    remissions = _count(words, 9 + count, "remissions")
+    angles = np.asarray(start + step * np.arange(count), dtype=np.float64)
+    return 10 + count + remissions, ranges, angles, farthest
+
+
+def _robotlaser(line: int, words: Sequence[str]) -> _Reading:
+    at, ranges, angles, farthest = _laser_head(words)
+    laser = _pose(_take(words, at, 3, "the laser's pose"), "the laser's pose")
+    odom = _pose(_take(words, at + 3, 3, "the robot's pose"), "the robot's pose")
+    stamp = _numbers(_take(words, at + 11, 1, "the stamp"), "the stamp")[0]
+    return _Reading(line, stamp, ranges, angles, farthest, odom, laser)
+
+
+def _rawlaser(line: int, words: Sequence[str]) -> _Reading:
+    at, ranges, angles, farthest = _laser_head(words)
+    stamp = _numbers(_take(words, at, 1, "the stamp"), "the stamp")[0]
+    return _Reading(line, stamp, ranges, angles, farthest, None, None)
+
+
+_READERS = {"FLASER": _flaser, "ROBOTLASER1": _robotlaser, "RAWLASER1": _rawlaser}
+
+
+def _backwards(path: Path, readings: Sequence[_Reading]) -> int:
+    """How many scans have an earlier stamp than the one before, as loggers on two machines do.
+
+    Raises:
+        LogError: the clock jumps back.
+    """
+    count = 0
+    for before, after in itertools.pairwise(readings):
+        if after.stamp < before.stamp - _JITTER:
+            message = f"the clock runs backwards, from {before.stamp} to {after.stamp} s"
+            cure = "two logs in one file are two maps: split the file here"
+            raise LogError.at(path, after.line, message, cure)
+        count += after.stamp < before.stamp
+    return count
+
+
+def _scans(
+    path: Path, readings: Sequence[_Reading], odometry: Sequence[tuple[float, Pose2D]]
+) -> Iterator[LoggedScan]:
+    whole = [reading for reading in readings if reading.odom is not None]
+    if not whole:
+        whole = list(_with_odometry(path, readings, odometry))
+    counts = [reading.ranges.size for reading in whole]
+    usual = max(set(counts), key=counts.count)
+    whole = [reading for reading in whole if reading.ranges.size == usual]
+    nothing = _no_return(np.concatenate([reading.ranges for reading in whole]))
+    mount = _mount(whole)
+    for reading in whole:
+        assert reading.odom is not None
+        angles = reading.angles + mount.yaw
+        hit = np.isfinite(reading.ranges) & (reading.ranges > _NEAREST)
+        hit &= reading.ranges < min(nothing, reading.farthest)
+        rays = Rays(
+            np.array([mount.x, mount.y]),
+            np.column_stack([np.cos(angles), np.sin(angles)]),
+            np.where(hit, reading.ranges, 0.0),
+            hit,
+        )
+        yield LoggedScan(reading.stamp, reading.odom, rays)
+
+
+def _no_return(ranges: NDArray[np.float64]) -> float:
+    """The range from which on a beam has hit nothing: the greatest one, if it is frequent."""
+    finite = ranges[np.isfinite(ranges)]
+    if not finite.size:
+        return math.inf
+    most = float(finite.max())
+    often = float((finite >= 0.99 * most).mean()) >= _AT_MOST
+    return 0.99 * most if often else math.inf
+
+
+def _mount(readings: Sequence[_Reading]) -> Pose2D:
+    """`base_from_laser`, from a raw log; a corrected one does not tell it, so zero."""
+    offsets = np.array(
+        [
+            (found.x, found.y, found.yaw)
+            for each in readings
+            if each.odom is not None and each.laser is not None
+            for found in [each.odom.inverse() @ each.laser]
+        ]
+    )
+    if not len(offsets):
+        return Pose2D(0.0, 0.0)
+    middle = np.median(offsets, axis=0)
+    if float(np.quantile(np.abs(offsets - middle).max(axis=1), 0.95)) > _SAME_MOUNT:
+        return Pose2D(0.0, 0.0)
+    return Pose2D(*(float(value) for value in middle))
+
+
+def _with_odometry(
+    path: Path, readings: Sequence[_Reading], odometry: Sequence[tuple[float, Pose2D]]
+) -> Iterator[_Reading]:
+    """RAWLASER1's scans with the odometry at their stamps, between two lines ODOM."""
+    if len(odometry) < 2:
+        raise LogError(f"{path}: scans without odometry; expected lines ODOM beside RAWLASER1")
+    stamps = np.array([stamp for stamp, _ in odometry])
+    for each in readings:
+        after = int(np.searchsorted(stamps, each.stamp))
+        if not 0 < after < len(stamps):
+            continue
+        (t0, before), (t1, later) = odometry[after - 1], odometry[after]
+        part = 0.0 if t1 <= t0 else (each.stamp - t0) / (t1 - t0)
+        step = before.inverse() @ later
+        odom = before @ Pose2D(part * step.x, part * step.y, part * step.yaw)
+        yield _Reading(each.line, each.stamp, each.ranges, each.angles, each.farthest, odom, None)

@@ -1,0 +1,184 @@
+"""The mapper: scans and odometry in, the poses of all scans out, better with each loop."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from momantu_bt.geometry import Pose2D
+from momantu_skills.mapping import pose_graph
+from momantu_skills.mapping.config import MappingConfig
+from momantu_skills.mapping.loops import SEEN_FROM, Loop, distance, find_loop
+from momantu_skills.mapping.pose_graph import Match
+from momantu_skills.mapping.scan import ScanPoints
+from momantu_skills.mapping.submap import Growing, Submap
+from momantu_skills.mapping.tracking import Tracked, track
+from momantu_skills.navigation.map.sensing import Rays
+
+TURN_COUNTS = 0.5
+"""Metres that a radian of turning counts for a submap's length."""
+NEW = np.diag([0.02**2, 0.02**2, 0.006**2])
+"""Covariance (m, m, rad) of the scan that begins a submap."""
+GROWTH = 0.05
+"""Share by which the way grows before the graph is optimised again: the cost stays in proportion to
+the way."""
+LAST_ROUNDS = 3
+"""Rounds of loops between neighbours at the end."""
+NEIGHBOUR, ALONE = 1.5, 4.0
+"""How far submaps may be off at the end, m: with a loop, and without one."""
+LAST_CANDIDATES = 4
+
+
+@dataclass(slots=True, eq=False)
+class _Open:
+    """A submap that grows. number: its own; way: of the base since its start, m."""
+
+    number: int
+    growing: Growing
+    way: float = 0.0
+    scans: dict[int, Pose2D] = field(default_factory=dict)
+
+
+class Mapper:
+    """Makes a map of scans that come one after the other. Two submaps grow at a time."""
+
+    def __init__(self, config: MappingConfig | None = None) -> None:
+        self.config = config or MappingConfig()
+        self.poses: list[Pose2D] = []
+        """`map_from_base` of each scan; the first is the map's origin."""
+        self.loops: list[Loop] = []
+        self._odometry: list[Pose2D] = []
+        self._motions: list[Pose2D] = []
+        self._matches: list[Match] = []
+        self._origins: list[Pose2D] = []
+        self._ways: list[float] = []
+        self._finished: dict[int, Submap] = {}
+        self._open: list[_Open] = []
+        self._tried: set[tuple[int, int]] = set()
+        self._optimised = 0
+        self._waiting = 0
+        """Loops that the graph has not been optimised with."""
+
+    def add(self, odom_from_base: Pose2D, rays: Rays) -> Tracked:
+        """Enter the next scan. The mapper's newest pose is then in `poses`."""
+        scan = ScanPoints.from_rays(rays, self.config.longest)
+        if not self.poses:
+            tracked = Tracked(Pose2D(0.0, 0.0), NEW, 1.0)
+            self.poses.append(tracked.pose)
+            self._begin(scan)
+        else:
+            motion = self._odometry[-1].inverse() @ odom_from_base
+            tracked = self._track(motion, scan)
+            self._motions.append(motion)
+        self._odometry.append(odom_from_base)
+        self._turn_over(scan)
+        return tracked
+
+    def _track(self, motion: Pose2D, scan: ScanPoints) -> Tracked:
+        number = len(self.poses)
+        first = self._open[0]
+        tracked = track(first.growing, first.scans[number - 1], motion, scan, self.config)
+        pose = self._origins[first.number] @ tracked.pose
+        self.poses.append(pose)
+        way = math.hypot(motion.x, motion.y) + TURN_COUNTS * abs(motion.yaw)
+        for each in self._open:
+            own = tracked.pose
+            if each is not first:
+                own = self._origins[each.number].inverse() @ pose
+            each.growing.add(own, scan)
+            each.scans[number] = own
+            each.way += way
+            self._matches.append(Match(each.number, number, own, tracked.covariance))
+        return tracked
+
+    def _begin(self, scan: ScanPoints) -> None:
+        """Begin a submap at the newest scan."""
+        number, at = len(self._origins), len(self.poses) - 1
+        self._origins.append(self.poses[-1])
+        self._ways.append(self._ways[-1] + self._open[-1].way if self._open else 0.0)
+        opened = _Open(number, Growing(self.config))
+        opened.growing.add(Pose2D(0.0, 0.0), scan)
+        opened.scans[at] = Pose2D(0.0, 0.0)
+        self._open.append(opened)
+        self._matches.append(Match(number, at, Pose2D(0.0, 0.0), NEW))
+
+    def _turn_over(self, scan: ScanPoints) -> None:
+        """Finish and begin submaps as the way demands it."""
+        oldest = self._open[0]
+        if len(self._open) == 1 and oldest.way > self.config.submap_way / 2:
+            self._begin(scan)
+        elif oldest.way > self.config.submap_way:
+            self._begin(scan)
+            self._finish(self._open.pop(0))
+
+    def _finish(self, opened: _Open) -> None:
+        submap = opened.growing.finished()
+        if submap is None:
+            return
+        self._finished[opened.number] = submap
+        off = {
+            older: min(
+                self.config.loop_uncertainty
+                + self.config.loop_drift * self._driven(older, opened.number),
+                self.config.loop_farthest,
+            )
+            for older in self._finished
+            if older < opened.number - 2
+        }
+        self._waiting += self._find_loops(opened.number, off, self.config.loop_candidates)
+        if self._waiting and len(self.poses) > (1.0 + GROWTH) * self._optimised:
+            self._optimise()
+
+    def _driven(self, older: int, newer: int) -> float:
+        """The way, m, on which the newer submap has drifted from the older one."""
+        closed = [loop.newer for loop in self.loops if older < loop.newer <= newer]
+        return self._ways[newer] - self._ways[max(closed, default=older)]
+
+    def _find_loops(self, newer: int, off: dict[int, float], most: int) -> int:
+        """Compare a submap with the nearest of others that may be `off` by so much, m."""
+        submap, at = self._finished[newer], self._origins[newer]
+        near: list[tuple[float, int]] = []
+        for older, far in off.items():
+            apart = distance(submap, at, self._finished[older], self._origins[older])
+            if apart < far + SEEN_FROM:
+                bisect.insort(near, (apart, older))
+        found = 0
+        for _, older in near[:most]:
+            guess = self._origins[older].inverse() @ at
+            self._tried.add((older, newer))
+            pose = find_loop(self._finished[older], submap, guess, off[older], self.config)
+            if pose is not None:
+                self.loops.append(Loop(older, newer, pose))
+                found += 1
+        return found
+
+    def _optimise(self) -> None:
+        self.poses, self._origins = pose_graph.optimise(
+            self.poses, self._origins, self._motions, self._matches, self.loops, self.config
+        )
+        self._optimised, self._waiting = len(self.poses), 0
+
+    def finish(self) -> None:
+        """Finish all submaps, look for loops between neighbours, and optimise for the last time."""
+        while self._open:
+            self._finish(self._open.pop(0))
+        if not self._finished:
+            return
+        for _ in range(LAST_ROUNDS):
+            self._optimise()
+            closed = {number for loop in self.loops for number in (loop.older, loop.newer)}
+            found = 0
+            for newer in self._finished:
+                off = NEIGHBOUR if newer in closed else ALONE
+                untried = {
+                    older: off
+                    for older in self._finished
+                    if older < newer - 2 and (older, newer) not in self._tried
+                }
+                found += self._find_loops(newer, untried, LAST_CANDIDATES)
+            if not found:
+                break
+        self._optimise()

@@ -1,0 +1,30 @@
+"""Poses on the floor as arrays (x, y, yaw), for kernels and the pose graph."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+
+
+def as_array(pose: Pose2D) -> Array:
+    """(x, y, yaw)."""
+    return np.array([pose.x, pose.y, pose.yaw])
+
+
+def as_pose(pose: Array) -> Pose2D:
+    """The pose of an array (3,)."""
+    return Pose2D(float(pose[0]), float(pose[1]), math.remainder(float(pose[2]), math.tau))
+
+
+def moved(points: Array, pose: Pose2D) -> Array:
+    """Points (n, 2) of a frame at `pose`."""
+    return np.asarray(turned(points, pose.yaw) + np.array([pose.x, pose.y]))
+
+
+def turned(vectors: Array, yaw: float) -> Array:
+    """Vectors (n, 2) turned by an angle, rad."""
+    c, s = math.cos(yaw), math.sin(yaw)
+    return np.ascontiguousarray(vectors @ np.array([[c, s], [-s, c]]))

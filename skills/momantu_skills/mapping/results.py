@@ -1,0 +1,108 @@
+"""The folder of a map: floor plan, picture, trajectory, report."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.formats.files import OutputError, write_whole
+from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
+from momantu_bt.geometry import Pose2D
+from momantu_bt.lazy import lazily
+
+with lazily():
+    from PIL import Image, ImageDraw
+
+MAP, PICTURE, TRAJECTORY, REPORT = "map.yaml", "map.png", "trajectory.tum", "report.json"
+_WAY = (200, 60, 40)
+_START, _END = (40, 140, 60), (40, 80, 200)
+_LEAST_EDGE = 800
+"""Pixels of the picture's longer side; small maps are drawn larger."""
+
+
+def check_folder(folder: Path) -> None:
+    """Check that a map can be written into a folder: it is empty, or there is none yet.
+
+    Raises:
+        OutputError: it holds files, or is one.
+    """
+    if folder.is_dir() and any(folder.iterdir()):
+        raise OutputError(f"{folder} holds files already; choose another folder")
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder} is a file; choose a folder")
+
+
+def write_folder(
+    folder: Path,
+    plan: MapPicture,
+    stamps: Sequence[float],
+    poses: Sequence[Pose2D],
+    report: dict[str, Any],
+) -> None:
+    """Write a map. The floor plan comes last: a folder with `map.yaml` is whole.
+
+    Raises:
+        OutputError: the folder cannot be written.
+    """
+    write_whole(folder / TRAJECTORY, _trajectory(stamps, poses), folders=True)
+    write_whole(folder / PICTURE, _picture(plan, poses))
+    write_whole(folder / REPORT, json.dumps(report, indent=2) + "\n")
+    write_map(folder / MAP, plan)
+
+
+def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str, Any]:
+    """What is known of a map, as plain data: m and square metres."""
+    cells, area = plan.cells(), plan.resolution**2
+    way = sum(a.distance_to(b) for a, b in itertools.pairwise(poses))
+    return {
+        "scans": len(poses),
+        "way_m": round(way, 3),
+        "loops": loops,
+        "resolution_m": plan.resolution,
+        "size_m": [round(edge * plan.resolution, 3) for edge in cells.shape[::-1]],
+        "free_m2": round(float((cells == FREE).sum() * area), 2),
+        "occupied_m2": round(float((cells == OCCUPIED).sum() * area), 2),
+    }
+
+
+def _trajectory(stamps: Sequence[float], poses: Sequence[Pose2D]) -> str:
+    """`map_from_base` in the TUM format: stamp x y z qx qy qz qw."""
+    lines = ["# map_from_base: stamp x y z qx qy qz qw, s and m"]
+    for stamp, pose in zip(stamps, poses, strict=True):
+        half = pose.yaw / 2
+        lines.append(
+            f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} 0 0 0 {math.sin(half):.9f} {math.cos(half):.9f}"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def _picture(plan: MapPicture, poses: Sequence[Pose2D]) -> bytes:
+    """A PNG of the floor plan with the way driven, green at its start and blue at its end."""
+    levels: NDArray[np.uint8] = plan.levels.astype(np.uint8)
+    scale = max(1, round(_LEAST_EDGE / max(levels.shape)))
+    image = Image.fromarray(levels).convert("RGB")
+    image = image.resize((image.width * scale, image.height * scale), Image.Resampling.NEAREST)
+    draw = ImageDraw.Draw(image)
+    per_metre = scale / plan.resolution
+    places = [
+        (
+            (pose.x - plan.origin[0]) * per_metre,
+            image.height - (pose.y - plan.origin[1]) * per_metre,
+        )
+        for pose in poses
+    ]
+    draw.line(places, fill=_WAY, width=max(1, scale // 2))
+    for (x, y), colour in ((places[0], _START), (places[-1], _END)):
+        r = 2.0 * scale
+        draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
+    stream = io.BytesIO()
+    image.save(stream, "PNG")
+    return stream.getvalue()
