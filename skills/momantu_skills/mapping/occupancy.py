@@ -9,6 +9,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.errors import InputError
 from momantu_bt.formats.maps import MapPicture
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.mapping.poses import moved
@@ -29,8 +30,13 @@ def floor_plan(
     """The map of scans at `map_from_base`, each with its rays in base; ranges up to `longest` m.
 
     A beam that hit nothing says nothing.
+
+    Raises:
+        InputError: no beam hit anything.
     """
     origins, ends = _beams(scans, longest)
+    if not len(ends):
+        raise InputError(f"no beam hit anything within {longest:g} m: there is nothing to map")
     low = np.floor((np.vstack([origins, ends]).min(axis=0) - BORDER) / resolution) * resolution
     high = np.vstack([origins, ends]).max(axis=0) + BORDER
     columns, rows = (math.ceil(size) for size in (high - low) / resolution)

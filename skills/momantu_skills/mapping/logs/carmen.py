@@ -73,7 +73,15 @@ def read_carmen(path: Path) -> Log:
         notes.append(f"left out {len(broken)} broken lines, the first is line {line}: {why}")
     if back:
         notes.append(f"{back} scans have an earlier stamp than the one before")
-    return Log(tuple(_scans(path, readings, odometry)), tuple(notes))
+    whole = [reading for reading in readings if reading.odom is not None]
+    whole = whole or list(_with_odometry(path, readings, odometry))
+    counts = [reading.ranges.size for reading in whole]
+    usual = max(counts, key=counts.count)
+    alike = [reading for reading in whole if reading.ranges.size == usual]
+    if len(alike) < len(whole):
+        left_out = len(whole) - len(alike)
+        notes.append(f"left out {left_out} scans that have not {usual} beams as the others")
+    return Log(tuple(_scans(alike)), tuple(notes))
 
 
 def _lines(
@@ -222,15 +230,8 @@ def _backwards(path: Path, readings: Sequence[_Reading]) -> int:
     return count
 
 
-def _scans(
-    path: Path, readings: Sequence[_Reading], odometry: Sequence[tuple[float, Pose2D]]
-) -> Iterator[LoggedScan]:
-    whole = [reading for reading in readings if reading.odom is not None]
-    if not whole:
-        whole = list(_with_odometry(path, readings, odometry))
-    counts = [reading.ranges.size for reading in whole]
-    usual = max(set(counts), key=counts.count)
-    whole = [reading for reading in whole if reading.ranges.size == usual]
+def _scans(whole: Sequence[_Reading]) -> Iterator[LoggedScan]:
+    """The scans of lines with odometry, all with as many beams."""
     nothing = _no_return(np.concatenate([reading.ranges for reading in whole]))
     mount = _mount(whole)
     for reading in whole:
@@ -282,6 +283,8 @@ def _with_odometry(
     if len(odometry) < 2:
         raise LogError(f"{path}: scans without odometry; expected lines ODOM beside RAWLASER1")
     stamps = np.array([stamp for stamp, _ in odometry])
+    if not stamps[0] < readings[-1].stamp <= stamps[-1]:
+        raise LogError(f"{path}: the stamps of ODOM and RAWLASER1 do not overlap")
     for each in readings:
         after = int(np.searchsorted(stamps, each.stamp))
         if not 0 < after < len(stamps):
