@@ -21,7 +21,7 @@ from momantu_bt import collector
 from momantu_bt.cli.shared import streams
 from momantu_bt.cli.shared.notices import notice
 from momantu_bt.cli.shared.program import COMPLETE, PROGRAM
-from momantu_bt.cli.subverbs import add_command, with_subverbs
+from momantu_bt.cli.subverbs import add_command, summary, with_subverbs
 from momantu_bt.cli.verbs import COMMANDS, VERBS, built_in
 from momantu_bt.errors import TRACEBACK, ExitCode, MomantuError, words_of
 from momantu_bt.lazy import lazily
@@ -108,8 +108,7 @@ def _app(given: Sequence[str]) -> typer.Typer:
             own = COMMANDS.load(name)
             add_command(app, name, with_subverbs(own, name, rest))
         else:
-            package = entry.dist.name if entry.dist is not None else "a plug-in"
-            app.command(name, help=f"From {package}.")(_never)
+            app.command(name, help=summary(entry))(_never)
     return app
 
 

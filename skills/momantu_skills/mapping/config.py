@@ -35,6 +35,8 @@ class MappingConfig:
     good_score: float = 0.75
     """Share of likelihood from which on a match is trusted as its geometry says; below it, the
     variance grows with the sixth power of what is lacking: a scan into a new room matches badly."""
+    broken_score: float = 0.35
+    """Score below which a submap ends: it is rigid only as long as its scans match."""
     loop_uncertainty: float = 1.5
     """How far a submap may be off without any drift, and `loop_drift` more per metre driven."""
     loop_drift: float = 0.05

@@ -74,7 +74,7 @@ class Mapper:
             tracked = self._track(motion, scan)
             self._motions.append(motion)
         self._odometry.append(odom_from_base)
-        self._turn_over(scan)
+        self._turn_over(scan, broken=tracked.score < self.config.broken_score)
         return tracked
 
     def _track(self, motion: Pose2D, scan: ScanPoints) -> Tracked:
@@ -88,7 +88,8 @@ class Mapper:
             own = tracked.pose
             if each is not first:
                 own = self._origins[each.number].inverse() @ pose
-            each.growing.add(own, scan)
+            if tracked.score >= self.config.broken_score:
+                each.growing.add(own, scan)
             each.scans[number] = own
             each.way += way
             self._matches.append(Match(each.number, number, own, tracked.covariance))
@@ -105,10 +106,16 @@ class Mapper:
         self._open.append(opened)
         self._matches.append(Match(number, at, Pose2D(0.0, 0.0), NEW))
 
-    def _turn_over(self, scan: ScanPoints) -> None:
-        """Finish and begin submaps as the way demands it."""
+    def _turn_over(self, scan: ScanPoints, broken: bool) -> None:
+        """Finish and begin submaps as the way demands it, or as a scan that does not match does."""
         oldest = self._open[0]
-        if len(self._open) == 1 and oldest.way > self.config.submap_way / 2:
+        if broken:
+            ended = self._open[:]
+            self._begin(scan)
+            del self._open[: len(ended)]
+            for each in ended:
+                self._finish(each)
+        elif len(self._open) == 1 and oldest.way > self.config.submap_way / 2:
             self._begin(scan)
         elif oldest.way > self.config.submap_way:
             self._begin(scan)

@@ -21,6 +21,9 @@ FIXED = np.array([1e-3, 1e-3, 1e-4])
 """Standard deviations (m, m, rad) of the first pose."""
 LOOP = np.array([0.05, 0.05, 0.01])
 """The same of a loop."""
+TOLERANCES = (32.0, 8.0, 2.0)
+"""Deviations beyond which a loop loses its influence, one optimisation after the other: at first
+many right loops move what a wrong match holds, then the few wrong loops let go."""
 SLACK = 3.0
 """How many times larger than its deviations odometry's error may be in the graph: it slips."""
 
@@ -48,30 +51,45 @@ def optimise(
     motions: by odometry from each scan to the next. Matches are weighted by Huber's function, loops
     and odometry by Cauchy's: a wrong one loses its influence.
     """
-    graph, values = gtsam.NonlinearFactorGraph(), gtsam.Values()
+    values = gtsam.Values()
     for i, pose in enumerate(scans):
         values.insert(_scan(i), _of(pose))
     for i, pose in enumerate(submaps):
         values.insert(_submap(i), _of(pose))
-    graph.add(gtsam.PriorFactorPose2(_scan(0), _of(scans[0]), _independent(FIXED)))
-    huber, cauchy = gtsam.noiseModel.mEstimator.Huber, gtsam.noiseModel.mEstimator.Cauchy
+    rigid = _rigid(scans[0], motions, matches, config)
+    for tolerance in TOLERANCES if loops else TOLERANCES[-1:]:
+        graph = gtsam.NonlinearFactorGraph(rigid)
+        for loop in loops:
+            noise = _robust(_cauchy(tolerance), _independent(LOOP))
+            keys = _submap(loop.older), _submap(loop.newer)
+            graph.add(gtsam.BetweenFactorPose2(*keys, _of(loop.pose), noise))
+        values = gtsam.LevenbergMarquardtOptimizer(graph, values).optimize()
+    return (
+        [_read(values.atPose2(_scan(i))) for i in range(len(scans))],
+        [_read(values.atPose2(_submap(i))) for i in range(len(submaps))],
+    )
+
+
+def _rigid(
+    first: Pose2D, motions: Sequence[Pose2D], matches: Sequence[Match], config: MappingConfig
+) -> Any:
+    """What is known without loops."""
+    graph = gtsam.NonlinearFactorGraph()
+    graph.add(gtsam.PriorFactorPose2(_scan(0), _of(first), _independent(FIXED)))
+    huber = gtsam.noiseModel.mEstimator.Huber.Create(2.0)
     for match in matches:
-        noise = _robust(huber.Create(2.0), gtsam.noiseModel.Gaussian.Covariance(match.covariance))
+        noise = _robust(huber, gtsam.noiseModel.Gaussian.Covariance(match.covariance))
         keys = _submap(match.submap), _scan(match.scan)
         graph.add(gtsam.BetweenFactorPose2(*keys, _of(match.pose), noise))
     for i, motion in enumerate(motions):
         far, turn = odometry_deviation(motion, config) * SLACK
-        noise = _robust(cauchy.Create(1.0), _independent(np.array([far, far, turn])))
+        noise = _robust(_cauchy(1.0), _independent(np.array([far, far, turn])))
         graph.add(gtsam.BetweenFactorPose2(_scan(i), _scan(i + 1), _of(motion), noise))
-    for loop in loops:
-        noise = _robust(cauchy.Create(2.0), _independent(LOOP))
-        keys = _submap(loop.older), _submap(loop.newer)
-        graph.add(gtsam.BetweenFactorPose2(*keys, _of(loop.pose), noise))
-    found = gtsam.LevenbergMarquardtOptimizer(graph, values).optimize()
-    return (
-        [_read(found.atPose2(_scan(i))) for i in range(len(scans))],
-        [_read(found.atPose2(_submap(i))) for i in range(len(submaps))],
-    )
+    return graph
+
+
+def _cauchy(tolerance: float) -> Any:
+    return gtsam.noiseModel.mEstimator.Cauchy.Create(tolerance)
 
 
 def _scan(i: int) -> int:
