@@ -155,8 +155,8 @@ def test_the_footprint_below_a_height_is_of_what_hangs_lower(
 
 def test_a_thin_wall_is_held_until_the_fingers_are_closed() -> None:
     belief = Holding(CONFIG)
-    belief.claim(HELD, 0.011, 1.0)
-    for width in np.linspace(0.011, 0.004, 10):
+    belief.claim(HELD, 0.021, 1.0)
+    for width in np.linspace(0.021, 0.004, 10):
         belief.judge(state(float(width), 45.0))
     assert belief.held is HELD
     for _ in range(CONFIG.doubt):

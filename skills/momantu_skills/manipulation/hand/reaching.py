@@ -14,7 +14,7 @@ from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
-from momantu_skills.manipulation.hand.rims import seen_hollow, wall_pieces
+from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 
@@ -100,8 +100,10 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     model = arm.scene.model
     grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
     wide = bool(grasps) and grasps[0].rim
-    space = arm.scene.seen_space
-    grasps = [g for g in grasps if not wide or seen_hollow(space, thing, g, model.open_fingers)]
+    if wide:
+        space, seen = arm.scene.seen_space, arm.scene.points
+        grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
+        grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
     if not grasps:
         rim = ", and no picture shows room for a finger behind its rim" if wide else ""
         raise Failure(

@@ -25,6 +25,10 @@ DOUBT = 0.0
 """Share of the depth that is added to it: both lie side by side in one picture."""
 SEEN = 0.9
 """Least share of the points in the finger's place that pictures showed to be free."""
+NEAR = 0.02
+"""Distance from the rim's expected place within which points show it, m."""
+FEW = 3
+"""Points (every fourth pixel in each direction) that prove a rim: one at 1 m has eight."""
 SHIFTS = (0.0, 0.5)
 """Positions of the inner finger that are looked at, as shares of its way to the wall."""
 
@@ -41,6 +45,14 @@ def seen_hollow(
         return True
     free = space.free(thing.pose.transform.apply(points), SLACK, DOUBT)
     return float(free.mean()) >= SEEN
+
+
+def seen_rim(points: Array, thing: DetectedObject, grasp: Grasp) -> bool:
+    """Whether points (n, 3) of a picture, odom, show an edge between the pads."""
+    place = np.array(grasp.object_from_grasp.position)
+    place[2] = thing.size[2] / 2
+    away = np.linalg.norm(points - thing.pose.transform.apply(place), axis=1)
+    return int((away < NEAR).sum()) >= FEW
 
 
 def wall_pieces(thing: DetectedObject) -> list[Array]:

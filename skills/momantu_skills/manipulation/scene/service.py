@@ -139,6 +139,11 @@ class Holding:
         self.held, self._width, self._doubts = held, width, 0
         self.last_contact = now
 
+    def _by_wall(self) -> bool:
+        """Whether the fingers are closer together than the object is anywhere across."""
+        assert self.held is not None
+        return self._width + self._config.width_tolerance < min(self.held.object.size[:2])
+
     def touched(self, now: float) -> None:
         """Report that the hand has touched or released something."""
         self.last_contact = now
@@ -152,9 +157,11 @@ class Holding:
         if self.held is None:
             return
         config = self._config
-        # a bowl's wall is thinner than the tolerance, and comes to lie flat between the pads
+        narrower = self._width - state.gripper_width
         closed = state.gripper_width < config.closed_width
-        moved = closed or abs(state.gripper_width - self._width) > config.width_tolerance
+        moved = closed or abs(narrower) > config.width_tolerance
+        if self._by_wall() and narrower > 0.0:
+            moved = closed  # a leaning wall comes to lie flat between the pads
         weak = state.gripper_effort < config.least_effort
         self._doubts = self._doubts + 1 if moved or weak else 0
         if self._doubts >= config.doubt:
