@@ -33,6 +33,7 @@ class Command:
     x and rad/s about z. hand: of the grasp frame about its origin, along the axes of the base
     frame. joints: speeds by joint, rad/s or m/s. opening: where the fingers are to go, m; None:
     they stay. stop: brake everything at once. ended: the person has left; skills brake and succeed.
+    lateral: of an omnidirectional base along y, m/s.
     """
 
     stamp: float
@@ -43,6 +44,7 @@ class Command:
     opening: float | None = None
     stop: bool = False
     ended: bool = False
+    lateral: float = 0.0
 
     def at(self, now: float) -> Command:
         """The command as it counts at a time, s: one that is too old moves nothing."""

@@ -16,7 +16,7 @@ from momantu_bt.teleoperation import Command, Operator
 from momantu_skills.controls import OPERATED, commanded, rehearsed
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.drive.vehicle import Vehicle
+from momantu_skills.navigation.drive.vehicle import Speed, Vehicle
 from momantu_skills.navigation.localize.service import LocalizationService
 
 SHARES = (1.0, 0.75, 0.5, 0.25)
@@ -56,13 +56,13 @@ class TeleopBase(Skill):
         limits = robot.description.base
         vehicle: Vehicle | None = None
         while not (command := commanded(self)).ended:
-            linear, angular = _within(limits, command)
-            if vehicle is None and (linear, angular) == (0.0, 0.0):
+            linear, angular, lateral = speeds = _within(limits, command)
+            if vehicle is None and not any(speeds):
                 yield "standing"
                 continue
             vehicle = vehicle or self._vehicle(robot)
-            share, phase = _share(vehicle, linear, angular)
-            yield from vehicle.drive(share * linear, share * angular, phase)
+            share, phase = _share(vehicle, speeds)
+            yield from vehicle.drive(share * linear, share * angular, phase, share * lateral)
         if vehicle is not None:
             yield from vehicle.stop("stopping")
 
@@ -72,19 +72,21 @@ class TeleopBase(Skill):
         return Vehicle(self, robot, self.localization, self.planning_scene, config, gazes=False)
 
 
-def _within(limits: BaseLimits, command: Command) -> tuple[float, float]:
-    """The commanded speeds, m/s and rad/s, or the base's greatest."""
-    linear = max(-limits.linear, min(limits.linear, command.linear))
-    return linear, max(-limits.angular, min(limits.angular, command.angular))
+def _within(limits: BaseLimits, command: Command) -> Speed:
+    """The commanded speeds, or the base's greatest."""
+    wanted = (command.linear, command.angular, command.lateral)
+    most = (limits.linear, limits.angular, limits.sideways)
+    linear, angular, lateral = (max(-m, min(m, w)) for w, m in zip(wanted, most, strict=True))
+    return linear, angular, lateral
 
 
-def _share(vehicle: Vehicle, linear: float, angular: float) -> tuple[float, str]:
+def _share(vehicle: Vehicle, speeds: Speed) -> tuple[float, str]:
     """The share of a command that is safe, and the phase that says why it is less than 1."""
-    if (linear, angular) == (0.0, 0.0):
+    if not any(speeds):
         return 1.0, "standing"
     vehicle.sense(depth=False)
-    seen = vehicle.allowed(linear, angular)
-    known = next((s for s in SHARES if _has_room(vehicle, s * linear, s * angular)), 0.0)
+    seen = vehicle.allowed(*speeds)
+    known = next((s for s in SHARES if _has_room(vehicle, *(s * v for v in speeds))), 0.0)
     if min(seen, known) == 1.0:
         return 1.0, "driving"
     where = "the laser sees it" if seen <= known else "in the map or an earlier scan"
@@ -92,18 +94,19 @@ def _share(vehicle: Vehicle, linear: float, angular: float) -> tuple[float, str]
     return min(seen, known), f"{verb}: obstacle, {where}"
 
 
-def _has_room(vehicle: Vehicle, linear: float, angular: float) -> bool:
+def _has_room(vehicle: Vehicle, linear: float, angular: float, lateral: float) -> bool:
     """Whether base, arm and load stay clear of the costmap until the base has braked."""
     pose, limits, after = vehicle.pose(), vehicle.limits, 0.0
     least = min(0.0, vehicle.room(pose, whole=True) - NEARER)
-    while linear != 0.0 or angular != 0.0:
-        pose = pose @ Pose2D(linear * STEP, 0.0, angular * STEP)
+    while linear != 0.0 or angular != 0.0 or lateral != 0.0:
+        pose = pose @ Pose2D(linear * STEP, lateral * STEP, angular * STEP)
         if vehicle.room(pose, whole=True) < least:
             return False
         after += STEP
         if after >= REACTION:
             linear = _slower(linear, limits.linear_acceleration * STEP)
             angular = _slower(angular, limits.angular_acceleration * STEP)
+            lateral = _slower(lateral, limits.linear_acceleration * STEP)
     return True
 
 

@@ -13,8 +13,9 @@ from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_skills.teleop_base import TeleopBase
 
 from momantu_bt.messages import BaseVelocity
+from momantu_bt.robot import BaseKind
 from momantu_bt.teleoperation import DEAD_MAN, Command, OperatorService
-from momantu_bt.testing import ScriptedWorld, run_skill
+from momantu_bt.testing import ScriptedWorld, run_skill, small_robot
 from tests.skills.scenery.flat import START, Box, Flat, FlatSceneOf
 
 Wanted = Callable[[float], Command]
@@ -128,3 +129,19 @@ def test_a_stretched_arm_stops_it_where_the_map_has_something(
     result = run_skill(TeleopBase, world=world, services=services)
     assert "stopped: obstacle, in the map or an earlier scan" in result.phases
     assert world.robot.truth.x + 0.7 < WALL[0][0] + 0.03
+
+
+def test_an_omnidirectional_base_slides_and_stops_before_a_wall(drive: Drive) -> None:
+    robot = small_robot()
+    limits = robot.base.model_copy(update={"kind": BaseKind.OMNIDIRECTIONAL})
+    sliding = robot.model_copy(update={"base": limits})
+    result = drive(lambda now: Command(now, lateral=0.3), 2.0, description=sliding)
+    assert result.status == "SUCCESS", result.explain()
+    moved = START.inverse() @ result.robot.truth
+    assert (moved.x, moved.y) == pytest.approx((0.0, 0.6), abs=0.06)
+    wall = [(-3.0, 0.9, -1.0, 1.0)]
+    result = drive(lambda now: Command(now, lateral=0.3), 6.0, description=sliding, hidden=wall)
+    assert 0.0 < result.robot.nearest < 0.3
+    assert any("stopped: obstacle" in phase for phase in result.phases)
+    result = drive(lambda now: Command(now, lateral=0.3), 2.0)
+    assert (START.inverse() @ result.robot.truth).y == pytest.approx(0.0, abs=0.01)

@@ -38,6 +38,8 @@ _DRIVE: Mapping[str, tuple[float, float]] = MappingProxyType(
     }
 )
 """Shares of the base's speeds ahead and to the left, by key."""
+_SLIDE: Mapping[str, float] = MappingProxyType({"[": 1.0, "]": -1.0})
+"""Shares of an omnidirectional base's speed sideways, by key."""
 _HAND: Mapping[str, tuple[int, float]] = MappingProxyType(
     {
         "i": (0, 1.0),
@@ -175,6 +177,8 @@ class Controls:
     def _add_base(self) -> None:
         for key, shares in _DRIVE.items():
             self._moves[key] = "base", partial(self._driven, *shares)
+        for key, share in _SLIDE.items() if self.able.base and self.able.base.sideways else ():
+            self._moves[key] = "base", partial(self._slid, share)
         self._does["+"] = self._does["="] = partial(self._scale, "base_share", FASTER)
         self._does["-"] = self._does["_"] = partial(self._scale, "base_share", 1.0 / FASTER)
 
@@ -216,6 +220,10 @@ class Controls:
     def _driven(self, ahead: float, left: float, command: Command) -> Command:
         linear, angular = self.base_speed
         return replace(command, linear=ahead * linear, angular=left * angular)
+
+    def _slid(self, left: float, command: Command) -> Command:
+        sideways = 0.0 if self.able.base is None else self.able.base.sideways
+        return replace(command, lateral=left * self.base_share * sideways)
 
     def _hand_moved(self, axis: int, way: float, command: Command) -> Command:
         speed = self.hand_speed[0 if axis < 3 else 1]

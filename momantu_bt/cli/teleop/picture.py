@@ -79,6 +79,8 @@ def _base(controls: Controls, seen: Seen) -> Iterator[_Row]:
         "BASE", seen.doing.get("base", ""), "" if seen.state is None else _speed(seen.state)
     )
     yield _keys("", "w ahead", "s back", "a left", "d right", "q e curves", "(or the arrows)")
+    if limits.sideways:
+        yield _keys("", "[ slide left", "] slide right")
     most = f"of {limits.linear:.2f}, {limits.angular:.2f}"
     yield _keys("", f"+ faster  - slower: {linear:.2f} m/s, {angular:.2f} rad/s ({most})")
 

@@ -14,6 +14,7 @@ from rich.console import Console, ConsoleDimensions
 from momantu_bt.cli.teleop.abilities import abilities, drivers
 from momantu_bt.cli.teleop.controls import HAND, HELD, Controls
 from momantu_bt.cli.teleop.picture import Seen, picture
+from momantu_bt.robot import BaseKind
 from momantu_bt.teleoperation import DEAD_MAN, STANDING, Command
 from momantu_bt.testing import eye_in_hand_robot, small_robot
 from momantu_bt.tree.registry import Registry
@@ -258,3 +259,17 @@ def test_skills_drive_what_a_robot_has():
 def test_the_camera_on_an_arm_is_driven_with_the_arm():
     driven = drivers(Registry.installed(), eye_in_hand_robot())
     assert driven.keys() == {"base", "arm", "gripper"}
+
+
+def test_a_base_that_drives_sideways_slides_and_others_do_not():
+    limits = ROBOT.base.model_copy(update={"kind": BaseKind.OMNIDIRECTIONAL, "lateral": 0.5})
+    seat = controls(robot=ROBOT.model_copy(update={"base": limits}))
+    for key, way in (("[", 1.0), ("]", -1.0)):
+        seat.press(key, 0.0)
+        command = seat.command(0.0)
+        assert command.lateral == pytest.approx(way * seat.base_share * 0.5)
+        assert command.linear == command.angular == 0.0
+    others = controls()
+    others.press("[", 0.0)
+    assert others.command(0.0).lateral == 0.0
+    assert "no meaning" in others.said
