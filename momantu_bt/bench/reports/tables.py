@@ -84,6 +84,11 @@ def _figures(summary: Summary) -> Iterator[str]:
     if not math.isnan(summary.speed.median):
         yield f"  simulated seconds per second of wall time: median {summary.speed.median:.1f}"
     yield f"  retries: {summary.tries}, in {summary.retried} of {summary.episodes} episodes"
+    if summary.strongest is not None:
+        yield (
+            f"  force of contacts: 95th percentile {summary.force.p95:.0f} N, "
+            f"largest {summary.force.largest:.0f} N (seed {summary.strongest})"
+        )
     if summary.episodes:
         yield f"  memory of a process: {_memory(summary.memory_mb)}"
     odd = {how: count for how, count in summary.ended.items() if how != REPORT}

@@ -39,8 +39,10 @@ class Summary:
     """Figures of some rows.
 
     interval: Wilson's, of the success rate. sim_time_s: of successes. speed: simulated seconds per
-    second of wall time. tries: retries of nodes over all episodes. retried: number of episodes
-    with a retry. claims: the auditor's counts per skill. ended: how the processes ended.
+    second of wall time. force: of each episode, the largest force with which the robot pushed
+    anything but what it brings, N; strongest: the seed of the largest. tries: retries of nodes over
+    all episodes. retried: number of episodes with a retry. claims: the auditor's counts per skill.
+    ended: how the processes ended.
     """
 
     episodes: int
@@ -49,6 +51,8 @@ class Summary:
     sim_time_s: Spread
     speed: Spread
     memory_mb: Spread
+    force: Spread
+    strongest: int | None
     tries: int
     retried: int
     blame: tuple[tuple[Blame, list[int]], ...]
@@ -63,6 +67,7 @@ class Summary:
         good = [row for row in rows if succeeded(row)]
         told = [row for row in rows if row["ended"] == REPORT]
         tries = [row["tries"] for row in told]
+        pushes = [(force, row["seed"]) for row in told if (force := _force(row)) is not None]
         return cls(
             episodes=len(rows),
             successes=len(good),
@@ -70,6 +75,8 @@ class Summary:
             sim_time_s=Spread.of([row["sim_time_s"] for row in good]),
             speed=Spread.of([_speed(row) for row in told if row["wall_time_s"] > 0.0]),
             memory_mb=Spread.of([row["memory_mb"] for row in rows if row["memory_mb"] is not None]),
+            force=Spread.of([force for force, _ in pushes]),
+            strongest=max(pushes, default=(0.0, None))[1],
             tries=sum(tries),
             retried=sum(count > 0 for count in tries),
             blame=tuple(blame_table(rows)),
@@ -87,6 +94,7 @@ class Summary:
             "sim_time_s": self.sim_time_s.as_dict(),
             "speed": self.speed.as_dict(),
             "memory_mb": self.memory_mb.as_dict(),
+            "force": {**self.force.as_dict(), "seed": self.strongest},
             "tries": self.tries,
             "retried": self.retried,
             "blame": [
@@ -102,6 +110,12 @@ class Summary:
 def _speed(row: Row) -> float:
     speed: float = row["sim_time_s"] / row["wall_time_s"]
     return speed
+
+
+def _force(row: Row) -> float | None:
+    """The largest force that the referee saw, N; None without a referee."""
+    force: float | None = (row.get("measures") or {}).get("force")
+    return force
 
 
 def _incidents(rows: Iterable[Row]) -> dict[str, list[int]]:

@@ -106,6 +106,15 @@ def test_rows_of_faults_that_cannot_happen_do_not_count() -> None:
     assert "there is no laser" in row_text(impossible)
 
 
+def test_the_largest_force_is_told_with_its_seed() -> None:
+    rows = [row(seed, measures={"force": 10.0 * seed}) for seed in (3, 9, 4)]
+    told = Summary.of([*rows, row(5, measures={}), row(6, ended="hung", measures=None)])
+    assert (told.force.largest, told.strongest) == (90.0, 9)
+    assert "largest 90 N (seed 9)" in summary_text("t.yaml", told)
+    assert told.as_dict()["force"]["seed"] == 9
+    assert Summary.of([row(1)]).strongest is None
+
+
 def test_incidents_are_counted_by_kind_with_their_seeds() -> None:
     push = {"time": 1.0, "kind": "force", "sentence": "…", "value": 160.0}
     drop = {"time": 2.0, "kind": "dropped", "sentence": "…", "value": 0.3}
