@@ -48,6 +48,8 @@ RIM_WALL = 0.010
 """Assumed thickness of a wall between the pads, m: a bowl's is 3 to 8 mm and leans."""
 THINNEST = 0.0025
 """Least opening at which a wall is between the pads, m: twice what a closed gripper may show."""
+THICKEST = 0.030
+"""Largest such opening, m: a wall of 8 mm that leans by 30 degrees, over the depth of the tips."""
 RIM_DEPTH = 0.035
 """Depth of the fingers' tips below a rim, m: more than half of a usual pad."""
 RIM_LEAST = 0.020
@@ -74,8 +76,9 @@ class Grasp:
 
     def fits(self, width: float, tolerance: float) -> bool:
         """Whether fingers that closed to `width` m may hold the object like this."""
-        least = THINNEST if self.rim else 0.0
-        return max(least, self.width - tolerance) <= width <= self.width + tolerance
+        if self.rim:
+            return THINNEST <= width <= THICKEST
+        return abs(width - self.width) <= tolerance
 
 
 def grasps_for(

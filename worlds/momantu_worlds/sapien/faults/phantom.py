@@ -56,7 +56,7 @@ class Phantom:
         item, draw = UprightCylinder(self._item), self._stage.random(self._fault)
         here = top.map_from_top.inverse().apply(self._stage.item_pose().position)
         things = things_on(self._stage, top)
-        half = np.array(top.top.size) / 2
+        half = np.array(top.size) / 2
         for _ in range(TRIES):
             x, y = draw.uniform(-half, half).tolist()
             at = Pose2D(x, y, float(draw.uniform(-math.pi, math.pi)))

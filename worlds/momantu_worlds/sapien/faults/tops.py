@@ -38,11 +38,16 @@ class TableTop:
     side: float
 
     @property
+    def size(self) -> tuple[float, float]:
+        """Its extent along its own x and y, m."""
+        return self.top.size
+
+    @property
     def placed(self) -> PlacedTable:
         """The same as a layout's type."""
         height = float(self.map_from_top.position[2])
         pose = Pose2D.from_transform(self.map_from_top)
-        return PlacedTable(pose, height, self.top.size, round=self.top.round)
+        return PlacedTable(pose, height, self.size, round=self.top.round)
 
     def within(self, x: float, y: float) -> bool:
         """Whether a point in its frame is above the top."""
