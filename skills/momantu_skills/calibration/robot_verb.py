@@ -50,9 +50,9 @@ def robot(
     Exit code 0: the calibration is printed; 2: a file is wrong, or the views do not allow one.
 
     Examples:
-      momantu-bt calibrate robot views.jsonl --robot fetch
-      momantu-bt calibrate robot views.jsonl --robot my_fetch --on-hand 7 --json found.json
-      momantu-bt calibrate robot views.jsonl --robot my_fetch --write my_fetch/robot.yaml
+      momantu-bt calibrate robot views.jsonl --robot my_robot
+      momantu-bt calibrate robot views.jsonl --robot my_robot --on-hand 7 --json found.json
+      momantu-bt calibrate robot views.jsonl --robot my_robot/ --write my_robot/robot.yaml
     """
     if json_file is not None:
         check_writable(json_file)

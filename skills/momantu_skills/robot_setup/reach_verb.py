@@ -41,7 +41,7 @@ def reach(
     Exit code 0: it is printed; 2: the robot has no arm, or cannot be read.
 
     Examples:
-      momantu-bt robots reach fetch -o reach.png
+      momantu-bt robots reach my_robot -o reach.png
       momantu-bt robots reach my_robot/ -o shelf.png --bottom 1m --top 1.4m
     """
     if output is not None:
