@@ -28,6 +28,7 @@ OUTPUTS: dict[str, Any] = {
     "found": DetectedObject("can", POSE, (0.07, 0.07, 0.13), "cylinder", 1.0, 0.7),
     "tag_pose": POSE,
     "tag_sigma": 0.001,
+    "seen": 2,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
 }
@@ -315,3 +316,19 @@ def test_what_is_not_there_is_told() -> None:
     script = Script(detect_object=["OBJECT_NOT_FOUND"])
     report = go("ask_first", script)
     assert said(report, "NOT_THERE") == "no can on table_a"
+
+
+def test_views_are_collected_and_one_without_a_tag_is_taken_again() -> None:
+    script = Script(record_view=[None, "TAG_NOT_SEEN"])
+    report = go("calibrate_robot", script, answers=["yes"] * 31)
+    assert report.status == "SUCCESS", report.failure
+    assert len(script.names()) == 31
+    assert set(script.given("record_view", "file")) == {"views.jsonl"}
+
+
+def test_a_robot_that_never_sees_a_tag_is_told() -> None:
+    script = Script(record_view=["TAG_NOT_SEEN"] * 5)
+    report = go("calibrate_robot", script)
+    assert report.status == "FAILURE"
+    assert "TAG_NOT_SEEN" in codes(report)
+    assert len(script.names()) == 5

@@ -1,0 +1,114 @@
+"""record_view: write what the camera sees of tags into a file, for `calibrate robot`."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.lazy import lazily
+from momantu_bt.messages import CameraImage, RobotState
+from momantu_bt.robot import Robot, read_camera
+from momantu_bt.skill import Failure, In, Out, Run, Skill, compute
+from momantu_bt.symptom import Symptom
+
+with lazily():
+    from momantu_skills.perception import tags
+
+BUDGET = 0.05
+"""Time allowed for searching one picture, s."""
+STILL = 0.01
+"""A joint or the base stands if it moves more slowly, rad/s or m/s."""
+STANDING = 0.3
+"""How long all must stand before the picture is taken, s."""
+PATIENCE = 5.0
+"""How long to wait for that, s."""
+
+
+class RecordView(Skill):
+    """Add a line to a file of views: the tags that the camera sees, the joints, the odometry."""
+
+    file: str = In(doc="the file; it is made if it does not exist")
+    edge: float = In(unit="m", least=0.001, most=1, doc="length of the black squares' sides")
+    seen: int = Out(doc="how many tags the line has")
+    also_called = ("collect_view", "save_view", "capture_view")
+    failures = {
+        "TAG_NOT_SEEN": "no tag is in the picture",
+        "STILL_MOVING": "the robot does not come to rest",
+        "VIEW_NOT_WRITTEN": "the file cannot be written, or it holds the views of another run",
+    }
+    senses = {"camera"}
+    activities = {}
+    symptoms = {"TAG_NOT_SEEN": {Symptom.NOT_SEEN, Symptom.MARKER_NOT_SEEN}}
+
+    @classmethod
+    def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+        """Write into a file of its own."""
+        file = Path(tempfile.mkdtemp()) / "views.jsonl"
+        return {"inputs": {"file": str(file), "edge": 0.1}}
+
+    def run(self, robot: Robot) -> Run:
+        """Wait until the robot stands, take a picture, add the line."""
+        begun = rested = robot.state().stamp
+        while (now := robot.state()).stamp - rested < STANDING:
+            if _moves(now):
+                rested = now.stamp
+            if now.stamp - begun > PATIENCE:
+                raise Failure("STILL_MOVING", f"the robot still moves after {PATIENCE:g} s")
+            yield "waiting"
+        image, state = read_camera(robot), robot.state()
+        found: dict[int, Array] = yield from compute(
+            partial(tags.find_tags, [image]), budget=BUDGET
+        )
+        if not found:
+            raise Failure("TAG_NOT_SEEN", "the camera's picture shows no tag")
+        name = robot.description.camera()[0]
+        _append(Path(self.file), _line(name, image, state, found, self.edge), state.stamp)
+        self.seen = len(found)
+
+
+def _moves(state: RobotState) -> bool:
+    speeds = np.abs([*state.velocities, state.linear, state.angular])
+    return bool(speeds.max() > STILL)
+
+
+def _line(
+    camera: str, image: CameraImage, state: RobotState, found: Mapping[int, Array], edge: float
+) -> str:
+    matrix, base = image.intrinsics, Pose2D.from_transform(state.odom_from_base)
+    data = {
+        "stamp": state.stamp,
+        "camera": camera,
+        "intrinsics": [float(matrix[at]) for at in ((0, 0), (1, 1), (0, 2), (1, 2))],
+        "joints": state.joints(),
+        "odometry": [base.x, base.y, base.yaw],
+        "tags": [
+            {"id": tag, "edge": edge, "corners": np.round(corners, 4).tolist()}
+            for tag, corners in sorted(found.items())
+        ],
+    }
+    return json.dumps(data) + "\n"
+
+
+def _append(file: Path, line: str, stamp: float) -> None:
+    """Add a line to a file of this run; raises Failure VIEW_NOT_WRITTEN."""
+    try:
+        last = file.read_text(encoding="utf-8").splitlines()[-1:] if file.exists() else []
+        if last and not json.loads(last[0])["stamp"] < stamp:
+            raise Failure(
+                "VIEW_NOT_WRITTEN",
+                f"{file} ends at a later time than now, {stamp:.2f} s: it is another run's; "
+                "name another file, or remove it",
+            )
+        with file.open("a", encoding="utf-8") as out:
+            out.write(line)
+    except OSError as error:
+        raise Failure("VIEW_NOT_WRITTEN", f"{file}: {error.strerror or error}") from None
+    except (ValueError, TypeError, KeyError):
+        raise Failure("VIEW_NOT_WRITTEN", f"{file} is no file of views; name another one") from None
