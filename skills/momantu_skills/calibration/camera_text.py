@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from momantu_skills.calibration.camera.coverage import CELLS, covered, gain
@@ -51,6 +53,29 @@ def _pictures(pictures: Pictures, lens: Lens) -> list[str]:
         said.append(f"{name:<{width}}  {error:8.3f} px {alone}")
     said += [f"{name:<{width}}  no board" for name in pictures.without]
     return said
+
+
+def plain(pictures: Pictures, lens: Lens, doubts: list[str]) -> dict[str, Any]:
+    """The result for a program: pixels and coefficients."""
+    matrix = lens.matrix
+    values = [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], *lens.distortion]
+    names = ("fx", "fy", "cx", "cy", *_NAMES[lens.model])
+    return {
+        "model": str(lens.model),
+        "width": int(pictures.size[0]),
+        "height": int(pictures.size[1]),
+        "error": float(lens.error),
+        "parameters": {
+            name: {"value": float(value), "deviation": float(deviation)}
+            for name, value, deviation in zip(names, values, lens.deviations, strict=True)
+        },
+        "pictures": [
+            {"name": name, "error": float(error), "used": bool(used)}
+            for name, error, used in zip(pictures.names, lens.errors, lens.used, strict=True)
+        ],
+        "without_board": list(pictures.without),
+        "notes": doubts,
+    }
 
 
 def notes(pictures: Pictures, lens: Lens) -> list[str]:

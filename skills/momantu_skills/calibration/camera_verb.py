@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -44,6 +45,9 @@ def camera(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Write camera_info, as ROS reads it.")
     ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", help="Write the result to a file, as JSON.")
+    ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw where the boards were, and the residuals: a PNG.")
     ] = None,
@@ -59,7 +63,7 @@ def camera(
       momantu-bt calibrate camera pictures/ --board "charuco 7x5" --square 30mm --marker 22mm
       momantu-bt calibrate camera wide/ --board "chessboard 9x6" --square 25mm --model fisheye
     """
-    for path in (output, plot):
+    for path in (output, plot, json_file):
         if path is not None:
             check_writable(path)
     given = boards.read_board(
@@ -73,8 +77,13 @@ def camera(
     found = lens.fit(given, shown.seen, shown.size, model)
     for line in camera_text.lines(shown, found):
         typer.echo(line)
-    for note in camera_text.notes(shown, found):
+    doubts = list(camera_text.notes(shown, found))
+    for note in doubts:
         typer.echo(f"note: {note}")
+    if json_file is not None:
+        data = camera_text.plain(shown, found, doubts)
+        write_whole(json_file, json.dumps(data, indent=2) + "\n")
+        typer.echo(f"written to {json_file}")
     if output is not None:
         write_whole(output, camera_info.camera_info(found, shown.size, name))
         typer.echo(f"written to {output}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import cv2
@@ -75,6 +76,12 @@ def test_pictures_of_a_chessboard(tmp_path: Path, capsys: pytest.CaptureFixture[
     yaml, plot = tmp_path / "camera.yaml", tmp_path / "plot.png"
     code, said = run(capsys, pictures, *CHESS, "-o", yaml, "--plot", plot, "--name", "eye")
     assert code == 0, said
+    out = tmp_path / "camera.json"
+    assert run(capsys, pictures, *CHESS, "--json", out)[0] == 0
+    data = json.loads(out.read_text(encoding="utf-8"))
+    assert f"fx {data['parameters']['fx']['value']:12.5f}" in said
+    assert [each["used"] for each in data["pictures"]] == [True] * 9
+    assert data["without_board"] == ["zz.png"]
     assert "9 pictures of 640 x 480 pixels count, of 10; model pinhole" in said
     assert "zz.png  no board" in said
     assert "9 pictures are few" in said
