@@ -10,7 +10,7 @@ import numpy as np
 from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import BaseKind, BaseLimits
-from momantu_skills.manipulation.model import arm_model
+from momantu_skills.manipulation.model import group
 from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
 from momantu_skills.navigation.control import glide, graceful
 from momantu_skills.navigation.control.guard import safe_share
@@ -24,7 +24,7 @@ from momantu_skills.navigation.plan.planner import plan
 
 def compile_kernels() -> None:
     """Compile the kernels of arm and base into numba's cache."""
-    arm_model.compile_kernels()
+    group.compile_kernels()
     compile_navigation()
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.manipulation.model.arm_model import ArmModel, Group, arm_model
+from momantu_skills.manipulation.model.arm_model import ArmModel, arm_model
+from momantu_skills.manipulation.model.group import Group
 from momantu_worlds.robots import fetch
 
 from momantu_bt.testing import eye_in_hand_robot

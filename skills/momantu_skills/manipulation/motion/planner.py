@@ -11,8 +11,8 @@ from ompl import util as ou
 
 from momantu_bt.geometry import Array
 from momantu_skills.manipulation.config import PlanningConfig
-from momantu_skills.manipulation.model.arm_model import Group
 from momantu_skills.manipulation.model.collision import CollisionWorld
+from momantu_skills.manipulation.model.group import Group
 
 Valid = Callable[[Array], bool]
 

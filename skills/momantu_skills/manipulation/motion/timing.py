@@ -11,7 +11,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.lazy import putting_off
 from momantu_bt.messages import JointTrajectory, frozen
 from momantu_skills.manipulation.config import PlanningConfig
-from momantu_skills.manipulation.model.arm_model import Group
+from momantu_skills.manipulation.model.group import Group
 
 # for plots that nobody draws here, and it takes longer than toppra itself
 with putting_off("matplotlib", "matplotlib.pyplot"):

@@ -11,7 +11,7 @@ import numpy as np
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import JointLimit
-from momantu_skills.manipulation.model.arm_model import Group, chain_group
+from momantu_skills.manipulation.model.group import Group, chain_group
 
 
 class LimbSolver:
