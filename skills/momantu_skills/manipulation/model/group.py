@@ -23,6 +23,8 @@ RANKED = 8
 """Random postures in which the freedoms of a chain are counted."""
 SINGULAR = 1e-3
 """Least singular value of a Jacobian, m or rad per rad or m, that counts as a freedom."""
+SPREAD = 0.618
+"""Step between the turns from which a free turn starts, as a share of all (the golden ratio)."""
 NEAR, TURN = 5e-4, 3e-3
 """Tolerances of inverse kinematics, m and rad: well below calibration errors."""
 
@@ -140,7 +142,8 @@ class Group:
         """
         found = np.zeros((len(targets), *seeds.shape))
         good = np.zeros(found.shape[:2], dtype=np.bool_)
-        starts = np.column_stack([seeds, np.zeros(len(seeds))])
+        spread = 2.0 * ((0.5 + SPREAD * np.arange(len(seeds))) % 1.0) - 1.0
+        starts = np.column_stack([seeds, min(limit, np.pi) * spread])
         for i, (target, centre) in enumerate(
             zip(targets, np.broadcast_to(centres, (len(targets), 3)), strict=True)
         ):
