@@ -18,6 +18,8 @@ YAWS = 16
 """Number of yaw angles in which an object may be placed."""
 SEEDS = 6
 """Start postures of the inverse kinematics per candidate."""
+STARTS = 24
+"""The same for an arm with few joints, of which several make up for each other."""
 POSTURES = 2
 """Postures kept per candidate, those that are quickest to reach."""
 ENOUGH = 4
@@ -127,7 +129,7 @@ def _postures(
             penalties.append(SPOT_PENALTY * rank)
     above = Transform((0.0, 0.0, arm.hand.above))
     targets = [(base_from_odom @ above @ pose @ object_from_tip).matrix for pose in poses]
-    seeds = arm.seeds(start, SEEDS)
+    seeds = arm.seeds(start, STARTS if group.few else SEEDS)
     if group.few:
         centres = np.array([(base_from_odom @ pose).position for pose in poses])
         found, good = group.solve_upright(np.array(targets), centres, seeds, math.pi / YAWS)

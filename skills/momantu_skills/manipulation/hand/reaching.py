@@ -35,6 +35,8 @@ CUT = (0.025, 0.025, 0.03)
 diagonal."""
 BESIDE = 0.003
 """Clearance between open hand and object until it closes, m: less than the palm's."""
+STARTS = 16
+"""The same for an arm with few joints, of which several make up for each other."""
 SQUARE = 0.05
 """How far an arm with few joints may turn a hand that grasps flat faces, rad."""
 ALIKE = 0.05
@@ -169,7 +171,7 @@ def _upright_postures(
     object_from_base = (arm.state.odom_from_base.inverse() @ thing.pose.transform).inverse()
     limit = math.inf if thing.shape == "cylinder" else SQUARE
     centre = object_from_base.inverse().position
-    found, good = group.solve_upright(targets, centre, arm.seeds(start, SEEDS), limit)
+    found, good = group.solve_upright(targets, centre, arm.seeds(start, STARTS), limit)
     ranked: list[tuple[float, int, Grasp, Array]] = []
     known: set[tuple[int, ...]] = set()
     for i, grasp in enumerate(grasps):
