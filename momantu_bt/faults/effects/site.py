@@ -10,6 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from momantu_bt.fault import Fault, FaultError
+from momantu_bt.faults.effects.moved_surface import moved_surfaces
 from momantu_bt.formats.maps import MapError, MapPicture, read_map, write_map
 from momantu_bt.formats.names import valid_names
 from momantu_bt.world import Site, seeded
@@ -26,23 +27,50 @@ def wrong_site(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
     """
     if fault.name == "table.height":
         return _other_heights(site, fault)
+    if fault.name == "table.moved":
+        return _other_places(site, fault, seed, folder)
     return _other_map(site, fault, seed, folder)
 
 
 def _other_heights(site: Site, fault: Fault) -> Site:
-    wanted, by = str(fault.parameters["surface"]), float(fault.parameters["by"])
-    if wanted and wanted not in site.surfaces:
-        hint = valid_names(wanted, site.surfaces, "surfaces")
-        raise FaultError(f"{fault.name}: {site.name} has no surface {wanted!r}; {hint}")
+    wanted, by = _wanted(site, fault), float(fault.parameters["by"])
     surfaces = {
         name: replace(surface, height=surface.height + by) if wanted in ("", name) else surface
         for name, surface in site.surfaces.items()
     }
     low = [name for name, surface in surfaces.items() if surface.height <= 0.0]
-    if low or not surfaces:
-        why = f"{low[0]} would lie below the floor" if low else f"{site.name} has no surfaces"
-        raise FaultError(f"{fault.name}: {why}")
+    if low:
+        raise FaultError(f"{fault.name}: {low[0]} would lie below the floor")
     return replace(site, surfaces=MappingProxyType(surfaces))
+
+
+def _wanted(site: Site, fault: Fault) -> str:
+    """The name of the surface that the fault is about; "" for all."""
+    wanted = str(fault.parameters["surface"])
+    if not site.surfaces:
+        raise FaultError(f"{fault.name}: {site.name} has no surfaces")
+    if wanted and wanted not in site.surfaces:
+        hint = valid_names(wanted, site.surfaces, "surfaces")
+        raise FaultError(f"{fault.name}: {site.name} has no surface {wanted!r}; {hint}")
+    return wanted
+
+
+def _other_places(site: Site, fault: Fault, seed: int, folder: Path) -> Site:
+    _wanted(site, fault)
+    files = tuple(file for file in (site.map_file, site.overhang_file) if file is not None)
+    try:
+        maps = tuple(map(read_map, files))
+    except MapError as error:
+        raise FaultError(f"{fault.name}: {error}") from None
+    surfaces, changed = moved_surfaces(site.surfaces, maps, fault, seed)
+    for file, plan in zip(files, changed, strict=True):
+        _written(plan, file, folder, (0.0, 0.0))
+    return replace(
+        site,
+        surfaces=surfaces,
+        map_file=None if site.map_file is None else folder / site.map_file.name,
+        overhang_file=None if site.overhang_file is None else folder / site.overhang_file.name,
+    )
 
 
 def _other_map(site: Site, fault: Fault, seed: int, folder: Path) -> Site:

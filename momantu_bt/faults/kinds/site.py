@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from math import pi
 
 from momantu_bt.fault_kind import FaultKind, Variant, Where, fault_kind, number, word
 from momantu_bt.symptom import Symptom
@@ -34,6 +35,24 @@ KINDS: tuple[FaultKind, ...] = (
             Symptom.NO_CONTACT,
             Symptom.ARM_WAY_BLOCKED,
             Symptom.NO_GRASP,
+            Symptom.CANNOT_SET_DOWN,
+        },
+    ),
+    _kind(
+        "table.moved",
+        "Surfaces stand elsewhere than the site and its floor plan say.",
+        number("distance", 0.5, "m", "how far, in a direction of the seed's", 0.0, 2.0),
+        number("turn", 0.0, "rad", "how much they are turned; the left is positive", -pi, pi),
+        word("surface", "", "which one; else all"),
+        begins=(),
+        notice=60.0,
+        recoverable=True,
+        symptoms={
+            Symptom.NOT_SEEN,
+            Symptom.WAY_BLOCKED,
+            Symptom.ARM_WAY_BLOCKED,
+            Symptom.NO_GRASP,
+            Symptom.NO_ROOM,
             Symptom.CANNOT_SET_DOWN,
         },
     ),
