@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -57,15 +57,57 @@ class Surface:
     round: bool = False
 
 
+class Surfaces(Mapping[str, Surface]):
+    """A site's surfaces as one run believes them: as told, until a skill finds one elsewhere.
+
+    corrections: how often that happened.
+    """
+
+    def __init__(self, told: Mapping[str, Surface]) -> None:
+        """Believe what is told. A `Surfaces` is copied with what it was told."""
+        self._told = dict(told.told if isinstance(told, Surfaces) else told)
+        self._now = dict(self._told)
+        self.corrections = 0
+
+    @property
+    def told(self) -> Mapping[str, Surface]:
+        """The surfaces as the site says."""
+        return MappingProxyType(self._told)
+
+    @property
+    def corrected(self) -> tuple[str, ...]:
+        """Names of the surfaces that were found elsewhere."""
+        return tuple(name for name in self._told if self._now[name] != self._told[name])
+
+    def correct(self, name: str, surface: Surface) -> None:
+        """From now on believe this of the surface; KeyError if none has that name."""
+        if name not in self._told:
+            raise KeyError(name)
+        self._now[name] = surface
+        self.corrections += 1
+
+    def __getitem__(self, name: str) -> Surface:
+        """The surface as believed now."""
+        return self._now[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """The names, in the site's order."""
+        return iter(self._told)
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._told)
+
+
 @dataclass(frozen=True, slots=True)
 class Site:
     """Everything that the robot is told about its surroundings.
 
     map_file: the floor plan, in map_server's YAML format. overhang_file: a map in the same format
     of known furniture that the laser's plane misses. start: the robot's approximate start pose in
-    the map; start_sigma: its standard deviations (m, rad). services: parameters of services and
-    skills, by name. area: the least x and y and the largest x and y of the floor plan, m; None if
-    they are not known.
+    the map; start_sigma: its standard deviations (m, rad). surfaces: in a run a `Surfaces`, which
+    skills correct. services: parameters of services and skills, by name. area: the least x and y
+    and the largest x and y of the floor plan, m; None if they are not known.
     """
 
     name: str

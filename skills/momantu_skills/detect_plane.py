@@ -51,7 +51,7 @@ class DetectPlane(Skill):
     spots: tuple[Pose, ...] = Out(
         doc="free spots, best first, on the surface, x away from the robot, z up; odom"
     )
-    also_called = ("find_plane", "find_table", "detect_table", "find_surface")
+    also_called = ("find_plane", "detect_table", "detect_surface")
     failures = {
         "PLANE_NOT_FOUND": "no level surface was seen there",
         "NO_FREE_SPOT": "no spot on it within reach of `near` has room for the size",

@@ -164,6 +164,7 @@ def test_what_nothing_implements_is_refused_before_the_first_tick(run_tree, tmp_
     refused("takes no phase 'drive'", "table.height@drive")
     refused("no surface 'table_c'; did you mean table_", "table.height:surface=table_c")
     refused("below the floor", "table.height:by=-0.9")
+    refused("no surface 'table_c'", "table.moved:surface=table_c")
     refused("scripted has no floor plan", "map.wrong")
     refused("did you mean base", "bse.stuck")
     report = run_tree(wait, "process.killed@5 s", world="none")
@@ -283,6 +284,41 @@ def test_surfaces_are_told_too_high(run_tree):
     assert heights("table.height:by=10 cm") == pytest.approx([0.8, 0.6])
     assert heights("table.height:by=-10 cm,surface=table_b") == pytest.approx([0.7, 0.4])
     assert heights("table.height", "table.height:by=1 cm") == pytest.approx([0.76, 0.56])
+
+
+def test_tables_are_told_elsewhere_and_drawn_there(run_tree):
+    maps = []
+
+    class Reader(Spy):
+        """Reads the map."""
+
+        def run(self, robot) -> Run:
+            maps.append(read_map(self.site.map_file))
+            yield from super().run(robot)
+
+    def told(fault, seed=0):
+        Spy.heard.clear()
+        maps.clear()
+        world = ExampleWorld()
+        true = world.site.surfaces
+        before = read_map(world.site.map_file)
+        run_tree("  Main: [spy]\n", fault, world=world, skills={"spy": Reader}, seed=seed)
+        return true, Spy.heard[0].surfaces, before, maps[0]
+
+    true, now, before, after = told("table.moved:surface=table_a,distance=40 cm,turn=0.2")
+    here, there = true["table_a"].map_from_surface, now["table_a"].map_from_surface
+    assert here.distance_to(there) == pytest.approx(0.4)
+    assert here.yaw - there.yaw == pytest.approx(0.2)
+    assert now["table_b"] == true["table_b"]
+    assert (after.occupied() != before.occupied()).any()
+    changed = np.argwhere(after.occupied() != before.occupied())[:, ::-1] * after.resolution
+    x = after.origin[0] + changed[:, 0]
+    y = after.origin[1] + len(after.levels) * after.resolution - changed[:, 1]
+    assert (
+        np.hypot(x - here.x, y - here.y).max() < 0.4 + math.hypot(*true["table_a"].size) / 2 + 0.2
+    )
+    again = told("table.moved:surface=table_a,distance=40 cm", seed=1)[1]["table_a"]
+    assert again.map_from_surface.distance_to(there) > 0.01, "another seed, another direction"
 
 
 def test_a_wrong_map_lacks_a_wall_or_lies_elsewhere(run_tree):

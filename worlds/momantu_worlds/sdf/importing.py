@@ -87,9 +87,10 @@ def import_world(
     placed = placed_models(source, deviations)
     robot = next((model for model in placed if is_robot(model)), None)
     things = [model for model in placed if model is not robot]
-    ground = find_ground(things, deviations)
     assets = Assets(f"{plain_name(output.stem)}_assets")
-    maker = BodyMaker(Shaping(assets, deviations, heed_up), ground, deviations)
+    shaping = Shaping(assets, deviations, heed_up)
+    ground = find_ground(things, shaping.faces, deviations)
+    maker = BodyMaker(shaping, ground, deviations)
     made = [
         body
         for model in things

@@ -7,6 +7,7 @@ from typing import Protocol
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.service import PlanningScene
+from momantu_bt.world import Surface
 
 with lazily():
     from momantu_skills.manipulation.scene import scene, site_obstacles
@@ -35,6 +36,10 @@ class ArmScene(PlanningScene, Protocol):
 
     def support(self, plane: SupportPlane) -> None:
         """Add a measured surface."""
+        ...
+
+    def surface_found(self, name: str, surface: Surface) -> None:
+        """From now on believe that a surface of the site is where it was found."""
         ...
 
     def take_over_site(self) -> None:

@@ -15,6 +15,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject, Service, ServiceContext, Snapshot
+from momantu_bt.world import Surface, Surfaces
 from momantu_skills.manipulation.config import SceneConfig
 
 with lazily():
@@ -88,6 +89,18 @@ class PlanningSceneService(Service):
         """Add a measured surface."""
         self.take_over_site()
         self.scene.add_support(plane)
+
+    def surface_found(self, name: str, surface: Surface) -> None:
+        """From now on believe that a surface of the site is where it was found.
+
+        Raises:
+            TypeError: the surfaces of this site cannot be corrected; those of a run can.
+        """
+        if not isinstance(self.site.surfaces, Surfaces):
+            raise TypeError(f"the surfaces of the site {self.site.name!r} are fixed")
+        self.site.surfaces.correct(name, surface)
+        self.__dict__.pop("floor_plan", None)
+        self.take_over_site()
 
     def take_over_site(self) -> None:
         """Place the site's surfaces and what hangs over them; none while not localized."""

@@ -14,8 +14,8 @@ from momantu_bt.frames import MAP, ODOM, FrameBuffer
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.world import Site, Surface
 from momantu_skills.manipulation.model.collision import Obstacle
+from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.fields import clearance
-from momantu_skills.navigation.map.maps import read_grid
 
 BESIDE = 0.04
 """Margin to all sides, m, for errors of the site's data and of localization."""
@@ -83,8 +83,7 @@ class FloorPlan:
 
     def __init__(self, site: Site, frames: FrameBuffer) -> None:
         self._frames = frames
-        files = [file for file in (site.map_file, site.overhang_file) if file is not None]
-        grids = [read_grid(file) for file in files]
+        grids = believed_maps(site)
         self._layers = [(g, clearance(g.cells == OCCUPIED, g.resolution)) for g in grids]
 
     def distance(self, points: Array) -> Array:

@@ -15,7 +15,7 @@ from momantu_skills.navigation.drive.manoeuvre import approach_is_sure, prepare,
 from momantu_skills.navigation.drive.moves import back_off, turn_to
 from momantu_skills.navigation.drive.route import Route, choose, first_choice
 from momantu_skills.navigation.drive.vehicle import Vehicle
-from momantu_skills.navigation.localize.confidence import is_localized, sigmas
+from momantu_skills.navigation.localize.confidence import QUALITY, is_localized, sigmas
 from momantu_skills.navigation.plan.goals import Stand
 
 Trip = Generator[str | Compute, Any, None]
@@ -51,13 +51,17 @@ class Destination:
         self.chosen: Pose2D | None = None
 
 
-def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> Trip:
+def travel(
+    vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool, quality: float = QUALITY
+) -> Trip:
     """Drive to the destination; recover from failures where that is allowed.
+
+    quality: least fit of the newest scan to the map at the start.
 
     Raises:
         Failure: NOT_LOCALIZED, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED, NO_PROGRESS.
     """
-    yield from be_sure(vehicle)
+    yield from be_sure(vehicle, quality)
     attempts = vehicle.config.attempts if recovery else 1
     for attempt in range(attempts):
         try:
@@ -70,10 +74,10 @@ def travel(vehicle: Vehicle, mppi: Mppi, to: Destination, *, recovery: bool) -> 
             yield from _recover(vehicle, attempt)
 
 
-def be_sure(vehicle: Vehicle) -> Trip:
+def be_sure(vehicle: Vehicle, quality: float = QUALITY) -> Trip:
     """Wait briefly until localization is certain; NOT_LOCALIZED if it is not."""
     end = vehicle.now() + SURE_WITHIN
-    while not is_localized(vehicle.localization):
+    while not is_localized(vehicle.localization, quality):
         if vehicle.now() > end:
             position, yaw = sigmas(vehicle.localization.covariance)
             raise Failure(

@@ -35,16 +35,25 @@ class Localizer:
     def __init__(
         self, grid: GridMap, config: LocalizationConfig, random: np.random.Generator
     ) -> None:
-        self._grid, self._config, self._random = grid, config, random
-        self._field = surface_distance(grid.cells == OCCUPIED, grid.resolution, config.reach)
+        self._config, self._random = config, random
+        self.use_map(grid)
+        self._search = False
+        self._widening = 1.0
+        self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
+
+    def use_map(self, grid: GridMap) -> None:
+        """Compare scans with this map from now on; the particles stay.
+
+        Raises:
+            ValueError: the map has no free cell.
+        """
+        self._grid = grid
+        self._field = surface_distance(grid.cells == OCCUPIED, grid.resolution, self._config.reach)
         self._free = grid.centers(grid.cells == FREE)
         if not len(self._free):
             raise ValueError("the map has no free cell, so a robot cannot be anywhere on it")
-        self._search = False
-        self._widening = 1.0
         self._weighed_with = 0.0
         self._likelihood = self._field
-        self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
 
     def reset(self, pose: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
         """Restart around a pose; standard deviations in m (each axis) and rad."""

@@ -13,7 +13,7 @@ from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import LocalizationConfig
 from momantu_skills.navigation.localize.confidence import sigmas
-from momantu_skills.navigation.map.maps import read_grid
+from momantu_skills.navigation.map.believed import believed_maps, corrections
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
@@ -50,8 +50,9 @@ class LocalizationService(Service):
         self._frames = context.frames
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
+        self._site, self._corrections = context.site, corrections(context.site)
         self._localizer: localizer.Localizer = localizer.Localizer(
-            read_grid(context.site.map_file), self._config, context.random
+            believed_maps(context.site)[0], self._config, context.random
         )
         self._odom_from_base: Pose2D | None = None
         self._since_scan = [0.0, 0.0]
@@ -73,6 +74,7 @@ class LocalizationService(Service):
             self._since_scan[0] += way
             self._since_scan[1] += turn
             self._rest_scans = max(self._rest_scans, 3)
+        self._follow_map()
         if self._due(moving):
             self._weigh(robot, moving)
         elif self._told:
@@ -80,6 +82,13 @@ class LocalizationService(Service):
         self._told = True
         map_from_odom = self._localizer.estimate @ odom_from_base.inverse()
         self._frames.set_map_from_odom(map_from_odom.transform(), now)
+
+    def _follow_map(self) -> None:
+        """Use the map with a surface that was found elsewhere, and look at it anew."""
+        if corrections(self._site) != self._corrections:
+            self._corrections = corrections(self._site)
+            self._localizer.use_map(believed_maps(self._site)[0])
+            self._rest_scans = self._config.rest_scans
 
     def _due(self, moving: bool) -> bool:
         far = self._since_scan[0] > self._config.move or self._since_scan[1] > self._config.turn

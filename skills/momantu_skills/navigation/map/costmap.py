@@ -12,8 +12,9 @@ from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import Site
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.fields import Field, clearance, sample
-from momantu_skills.navigation.map.maps import GridMap, read_grid
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 FAR = 1.0
@@ -133,8 +134,8 @@ def of_site(site: Site, config: NavigationConfig) -> Costmap:
     """The costmap of a site, before anything was seen; ValueError if the site has no map."""
     if site.map_file is None:
         raise ValueError(f"site {site.name!r} has no map_file to drive in")
-    overhang = None if site.overhang_file is None else read_grid(site.overhang_file)
-    return Costmap(read_grid(site.map_file), overhang, config)
+    grid, *overhang = believed_maps(site)
+    return Costmap(grid, overhang[0] if overhang else None, config)
 
 
 def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:

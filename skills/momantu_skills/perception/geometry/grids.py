@@ -71,6 +71,14 @@ def closed(mask: Mask, cells: int) -> Mask:
     return filled[cells + 1 : -cells - 1, cells + 1 : -cells - 1].astype(bool)
 
 
+def opened(mask: Mask, cells: int) -> Mask:
+    """The mask without parts that are at most twice `cells` wide (eroded, then dilated)."""
+    kernel = np.ones((2 * cells + 1, 2 * cells + 1), dtype=np.uint8)
+    padded = np.pad(mask.astype(np.uint8), cells + 1)
+    kept = cv2.dilate(cv2.erode(padded, kernel), kernel)
+    return kept[cells + 1 : -cells - 1, cells + 1 : -cells - 1].astype(bool)
+
+
 def clearance(blocked: Mask, cell: float) -> Array:
     """Distance (nx, ny) in m from each cell's centre to the nearest blocked cell's centre."""
     if not blocked.any():

@@ -1,9 +1,10 @@
-"""The floor of a world: the plane or slab that everything stands on; it becomes z = 0."""
+"""The floor of a world: the plane, slab or mesh that everything stands on; it becomes z = 0."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from momantu_worlds.sdf.body.parts import Rgb
 from momantu_worlds.sdf.body.placing import placed_in_link
 from momantu_worlds.sdf.deviations import Deviations
 from momantu_worlds.sdf.mesh.assets import mean_color, open_picture
-from momantu_worlds.sdf.read.model import Box, Plane, Shape
+from momantu_worlds.sdf.read.model import Box, MeshFile, Plane, Shape, Vector
 
 LEVEL = 0.9998
 """Least cosine between a floor's normal and the world's vertical: one degree."""
@@ -25,6 +26,12 @@ STEP = 0.5
 """A slab that is higher than this above the lowest floor is a ceiling or a stage, m."""
 CLOSE = 0.002
 """Floors within this height difference are one, m."""
+LAYER = 0.005
+"""Level triangles of a mesh within this height difference are one floor, m."""
+SHOWN = 0.005
+"""How far a mesh that is the floor lies above z = 0, m, so that it is seen."""
+Faces: TypeAlias = Callable[[MeshFile, Vector], Array]
+"""Triangles (n, 3, 3) of a mesh at a scale."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +50,10 @@ class Ground:
 
 @dataclass(frozen=True, slots=True)
 class _Level:
-    """A level upper face. area: m2; infinite for a plane."""
+    """A level upper face. area: m2; infinite for a plane.
+
+    Of a mesh it is the widest one; the mesh stays a body, as it may have walls too.
+    """
 
     height: float
     area: float
@@ -51,28 +61,30 @@ class _Level:
     shape: Shape
     touched: bool
 
+    @property
+    def meshed(self) -> bool:
+        """Whether it is a mesh's."""
+        return isinstance(self.shape.geometry, MeshFile)
 
-def find_ground(models: Iterable[PlacedModel], deviations: Deviations) -> Ground:
-    """The floor of a world, listed; z = 0 when it has none."""
+
+def find_ground(models: Iterable[PlacedModel], faces: Faces, deviations: Deviations) -> Ground:
+    """The floor of a world, listed; z = 0 when it has none. faces: reads meshes."""
     owners = [one for model in models for one in model.everything()]
-    levels = list(_levels(owners))
+    levels = list(_levels(owners, faces))
     slab = max(SLAB_SHARE * _area_of(owners), SLAB_LEAST)
     wide = [level for level in levels if level.touched and level.area >= slab]
     if not wide:
         return Ground()
     lowest = min(level.height for level in wide)
-    height = max(level.height for level in wide if level.height <= lowest + STEP)
+    height = _height([level for level in wide if level.height <= lowest + STEP])
     floors = [
         level
         for level in levels
         if lowest - STEP <= level.height <= height + CLOSE and level.area >= slab
     ]
     for level in floors:
-        if level.touched and (isinstance(level.shape.geometry, Box) or abs(height) > CLOSE):
-            moved = f"; it is at z = {height:g} m and becomes z = 0" if abs(height) > CLOSE else ""
-            subject = f"{level.placed.subject}/{level.shape.name}"
-            kind = type(level.shape.geometry).__name__.lower()
-            deviations.changed(level.shape.place, subject, f"a {kind}", f"it is the floor{moved}")
+        _list(level, height, deviations)
+    floors = [level for level in floors if not level.meshed]
     seen = [_color(level.shape) for level in reversed(floors) if not level.touched]
     frictions = [level.shape.friction for level in floors if level.shape.friction is not None]
     return Ground(
@@ -83,8 +95,33 @@ def find_ground(models: Iterable[PlacedModel], deviations: Deviations) -> Ground
     )
 
 
-def _levels(owners: Iterable[PlacedModel]) -> Iterator[_Level]:
-    """Upper faces of level planes and boxes of all static models."""
+def _height(near: list[_Level]) -> float:
+    """The height that becomes z = 0: of the highest floor; a mesh lies just above it."""
+    plain = [level.height for level in near if not level.meshed]
+    base = max(plain, default=0.0)
+    meshed = max((level.height for level in near if level.meshed), default=base)
+    above = meshed > base + CLOSE or (not plain and meshed < -CLOSE)
+    return meshed - SHOWN if above else base
+
+
+def _list(level: _Level, height: float, deviations: Deviations) -> None:
+    """Say what becomes of a floor."""
+    if not level.touched:
+        return
+    subject = f"{level.placed.subject}/{level.shape.name}"
+    kind = type(level.shape.geometry).__name__.lower().replace("meshfile", "mesh")
+    how = "it is the floor"
+    if level.height < height - CLOSE:
+        how = f"it is left out: the floor lies {height - level.height:.3f} m above it"
+    elif abs(height) > CLOSE:
+        how = f"it is the floor; it is at z = {level.height:g} m and becomes z = 0"
+    elif not isinstance(level.shape.geometry, Box):
+        return
+    deviations.changed(level.shape.place, subject, f"a {kind}", how)
+
+
+def _levels(owners: Iterable[PlacedModel], faces: Faces) -> Iterator[_Level]:
+    """Upper faces of level planes and boxes, and of touched meshes, of all static models."""
     for owner in owners:
         for placed in owner.links if owner.model.static else ():
             shapes = [(shape, True) for shape in placed.link.collisions]
@@ -92,6 +129,8 @@ def _levels(owners: Iterable[PlacedModel]) -> Iterator[_Level]:
             for shape, touched in shapes:
                 at = placed_in_link(owner, placed, shape.pose)
                 level = _upper_side(shape, at, placed)
+                if touched and isinstance(shape.geometry, MeshFile):
+                    level = _widest(at.apply(faces(shape.geometry, placed.scale).reshape(-1, 3)))
                 if level is not None:
                     yield _Level(*level, placed, shape, touched)
 
@@ -111,6 +150,21 @@ def _upper_side(shape: Shape, at: Transform, placed: PlacedLink) -> tuple[float,
         size = np.array(shape.geometry.size) * placed.scale
         return float(at.position[2] + size[axis] / 2), float(np.delete(size, axis).prod())
     return None
+
+
+def _widest(corners: Array) -> tuple[float, float] | None:
+    """Height and area of the widest level face among triangles, corners (3 n, 3); None if none."""
+    triangles = corners.reshape(-1, 3, 3)
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas = np.linalg.norm(normals, axis=1) / 2
+    level = normals[:, 2] > LEVEL * 2 * areas
+    if not level.any():
+        return None
+    heights = triangles[level, :, 2].mean(axis=1)
+    layers, layer = np.unique(np.round(heights / LAYER).astype(np.int64), return_inverse=True)
+    sums = np.bincount(layer.ravel(), weights=areas[level], minlength=len(layers))
+    widest = int(np.argmax(sums))
+    return float(np.median(heights[layer.ravel() == widest])), float(sums[widest])
 
 
 def _area_of(owners: Iterable[PlacedModel]) -> float:

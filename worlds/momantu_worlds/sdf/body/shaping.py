@@ -146,12 +146,7 @@ class Shaping:
         if not isinstance(geometry, MeshFile):
             return (_rounded(geometry, scale),)
         mesh = replace(geometry, scale=_product(geometry.scale, scale))
-        if mesh not in self._meshes:
-            try:
-                self._meshes[mesh] = read_mesh(mesh, heed_up=self.heed_up)
-            except BadMesh as error:
-                self._meshes[mesh] = error
-        found = self._meshes[mesh]
+        found = self._read(mesh)
         if isinstance(found, BadMesh):
             self.deviations.dropped(
                 shape.place, subject, f"{mesh.file}: {found}", "this shape is left out"
@@ -173,6 +168,21 @@ class Shaping:
                 "what it colours is drawn in plain",
             )
         return found.pieces
+
+    def faces(self, geometry: MeshFile, scale: Vector) -> Array:
+        """Triangles (n, 3, 3) of a mesh; none of a broken one. Nothing is listed."""
+        found = self._read(replace(geometry, scale=_product(geometry.scale, scale)))
+        pieces = () if isinstance(found, BadMesh) else found.pieces
+        corners = [piece.vertices[piece.triangles] for piece in pieces]
+        return np.concatenate(corners) if corners else np.zeros((0, 3, 3))
+
+    def _read(self, mesh: MeshFile) -> ReadMesh | BadMesh:
+        if mesh not in self._meshes:
+            try:
+                self._meshes[mesh] = read_mesh(mesh, heed_up=self.heed_up)
+            except BadMesh as error:
+                self._meshes[mesh] = error
+        return self._meshes[mesh]
 
     def _few(self, pieces: Sequence[Piece], shape: Shape, subject: str) -> Sequence[Piece]:
         few = reduced(pieces)
