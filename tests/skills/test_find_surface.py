@@ -9,11 +9,12 @@ from momantu_skills.find_surface import FindSurface
 from momantu_skills.navigation.localize.service import LocalizationService
 
 from momantu_bt.geometry import Pose2D, Transform
-from momantu_bt.testing import small_robot
+from momantu_bt.testing import ScriptedRobot, small_robot
 from momantu_bt.testing.painting import Block, Painter
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.world import Surface
 from tests.skills.scenery.flat import Flat, FlatScene
+from tests.skills.scenery.table import SceneOf
 
 BEGIN = Pose2D(1.9, 0.2, 0.0)
 """In the room of the desk, before the place where it is said to be."""
@@ -115,6 +116,35 @@ def test_an_unknown_surface_names_those_there_are(flat: Flat) -> None:
     result = run_skill(FindSurface, world=world, services=services, inputs={"surface": "dask"})
     assert result.failure is not None
     assert "surfaces: desk" in result.failure.message
+
+
+def test_not_localized(flat: Flat) -> None:
+    """Told to be in a cupboard's corner of the other room, the scans fit nothing near."""
+    world = flat(Pose2D(-2.0, 0.0, 0.0), believed=Pose2D(5.4, -2.4, 2.0))
+    services = {
+        "localization": LocalizationService(),
+        "planning_scene": Scene(world.robot.description.footprint),
+    }
+    result = run_skill(
+        FindSurface, world=world, services=services, inputs={"surface": "desk"}, max_time=60.0
+    )
+    assert result.code == "NOT_LOCALIZED", result.explain()
+    assert world.robot.truth == Pose2D(-2.0, 0.0, 0.0)
+
+
+def test_it_does_not_drive_with_an_arm_stretched_out_that_does_not_fold(
+    stretched_out: ScriptedRobot, scene_of: SceneOf
+) -> None:
+    scene = scene_of(stretched_out)
+    result = run_skill(
+        FindSurface,
+        robot=stretched_out,
+        inputs={"surface": "table_a"},
+        services={"localization": object(), "planning_scene": scene},
+        frames=scene.frames,
+    )
+    assert result.code == "ARM_STUCK", result.explain()
+    assert all(actuator != "base" for _, actuator, goal in stretched_out.commands if goal)
 
 
 def test_transforms_agree() -> None:
