@@ -91,7 +91,7 @@ class FindSurface(Skill):
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
     senses: ClassVar = {"camera"}
-    activities: ClassVar = {Activity.DRIVE: "", Activity.MEASURE_SURFACE: ""}
+    activities: ClassVar = {Activity.MEASURE_SURFACE: ""}
     symptoms: ClassVar = {
         "SURFACE_NOT_FOUND": {Symptom.NOT_SEEN, Symptom.WAY_BLOCKED},
         "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
