@@ -13,6 +13,8 @@ from momantu_bt.robots import RobotFileError, read_robot
 Write = Callable[..., Path]
 
 WRONG: list[tuple[str, str, str]] = [
+    ("linear: 1.0", "linear: 1.0\n  lateral: 0.5", "does not drive sideways"),
+    ("linear: 1.0", "linear: 1.0\n  kind: hovering", "possible: 'differential', 'omnidirectional'"),
     ("momantu_robot: 1\n", "", "1:1|2:1: the robot needs a key 'momantu_robot'"),
     ("momantu_robot: 1", "momantu_robot: 2", "2:16: momantu_robot: 2 is not possible here"),
     ("name: carter", "name: Carter 1", "3:7: name: "),
