@@ -112,7 +112,7 @@ class KnowsHeld(Protocol):
 
     @property
     def held(self) -> HeldObject | None:
-        """The held object or None; each update checks it against gripper width and effort."""
+        """The held object or None; each update checks that the fingers press on something."""
         ...
 
 
@@ -125,7 +125,7 @@ class PlanningScene(KnowsHeld, Protocol):
         ...
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Report what the gripper closed on; it is held as long as width and effort agree."""
+        """Report what the gripper closed on; it is held while the fingers press on something."""
         ...
 
     def observe(self, snapshot: Snapshot) -> None:

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypeAlias
 
 from momantu_bt.claim import BaseAt, Claim, GripperOpen, Holding
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Pose2D
-from momantu_bt.robot import Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.lazy import lazily
+from momantu_bt.robot import CameraSensor, Robot
+from momantu_bt.service import Localization
 from momantu_bt.skill import In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
+from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.localize.confidence import estimate, is_localized, sigmas
+from momantu_skills.perception.camera.snapshot import take
+
+with lazily():
+    from momantu_skills.manipulation.hand import between_pads, evidence
+    from momantu_skills.manipulation.scene import payload
+    from momantu_skills.manipulation.scene.payload import Weight
+
 
 NEAR = 1.5
 """Distance from a place, or from the edge of a surface, that counts as near, m."""
@@ -23,13 +32,20 @@ GAUGE = 0.003
 """Largest error of the gripper's measured opening, m."""
 ASTRAY = 0.10
 """Largest error of the robot's own position when it reports its distance from a place, m."""
+FEELING = 10
+"""Ticks over which fingers and weight are averaged if their first readings do not decide: 0.5 s."""
 NO = ("NOT_HOLDING", "HOLDING", "NOT_LOCALIZED", "NOT_NEAR", "NOT_OPEN")
 """Failure codes that mean that the answer is no."""
 Question: TypeAlias = Literal["holding", "not_holding", "localized", "near", "gripper_open"]
 
 
 class Check(Skill):
-    """Check something that the robot believes. It moves nothing."""
+    """Check something that the robot believes. It moves nothing.
+
+    Whether the hand holds something is weighed from fingers, weight and picture. Where the first
+    readings do not decide, it feels for half a second and takes a picture of the hand as it is;
+    after that it says HOLDING_UNKNOWN, and what would help.
+    """
 
     what: Question = In(doc='what to check; "near" needs `place`')
     place: str | None = In(None, doc='for "near": a place or surface of the site', names="place")
@@ -37,6 +53,7 @@ class Check(Skill):
     failures = {
         "NOT_HOLDING": "the hand holds nothing",
         "HOLDING": "the hand holds something",
+        "HOLDING_UNKNOWN": "fingers, weight and picture do not tell what the hand holds",
         "NOT_LOCALIZED": "the robot is not sure where it is",
         "NOT_NEAR": "the robot is not near the place",
         "NOT_OPEN": "the gripper is not open",
@@ -45,11 +62,12 @@ class Check(Skill):
     activities = {}
     symptoms = {
         "NOT_HOLDING": {Symptom.NOT_HELD},
+        "HOLDING_UNKNOWN": {Symptom.NOT_HELD, Symptom.HAND_STUCK},
         "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
         "NOT_OPEN": {Symptom.HAND_STUCK},
     }
     localization: Localization = Needs()
-    planning_scene: PlanningScene = Needs()
+    planning_scene: ArmScene = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:
@@ -57,13 +75,13 @@ class Check(Skill):
         return {"inputs": {"what": "gripper_open"}}
 
     def run(self, robot: Robot) -> Run:
-        """Answer at once."""
-        if self.what == "gripper_open":
+        """Answer at once, but for a hand that needs a closer look."""
+        if self.what in ("holding", "not_holding"):
+            yield from self._hand(robot)
+        elif self.what == "gripper_open":
             self._gripper_open(robot)
         else:
             getattr(self, f"_{self.what}")()
-        return
-        yield ""
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """Claim that the answer is yes; a failure that can be checked denies it."""
@@ -82,14 +100,64 @@ class Check(Skill):
         slack = -GAUGE if said else GAUGE
         return GripperOpen(OPEN * robot.description.hand.max_width + slack)
 
-    def _holding(self) -> None:
-        if self.planning_scene.held is None:
-            raise Failure("NOT_HOLDING", "gripper opening and effort say that nothing is held")
+    def _hand(self, robot: Robot) -> Run:
+        """Weigh what the senses say of the hand."""
+        if robot.description.end_effector is None:
+            self._answer(evidence.Grip.EMPTY, [])
+            return
+        found = self._felt(robot, [])
+        if self._in_doubt(found):
+            weights = []
+            for _ in range(FEELING):
+                yield "feeling"
+                weights.append(self.planning_scene.payload.weigh(robot))
+            found = self._felt(robot, weights)
+        if evidence.weighed(found) is evidence.Grip.UNKNOWN:
+            found += self._seen(robot)
+        self._answer(evidence.weighed(found), found)
 
-    def _not_holding(self) -> None:
-        held = self.planning_scene.held
-        if held is not None:
-            raise Failure("HOLDING", f"the hand holds a {held.object.category}")
+    def _in_doubt(self, found: Sequence[evidence.Evidence]) -> bool:
+        """Whether to feel longer: fingers may be jammed, so all senses must say that it holds."""
+        grip = evidence.weighed(found)
+        return grip is not evidence.Grip.EMPTY and not evidence.clear(found)
+
+    def _felt(self, robot: Robot, weights: Sequence[Weight | None]) -> list[evidence.Evidence]:
+        """What fingers and weight say; weights: earlier readings."""
+        scene = self.planning_scene
+        widest = robot.description.hand.max_width
+        found = [evidence.of_fingers(scene.holding.fingers, widest, scene.scene.config)]
+        known = [each for each in (*weights, scene.payload.weigh(robot)) if each is not None]
+        if known:
+            found.append(evidence.of_weight(payload.mean_weight(known)))
+        return found
+
+    def _seen(self, robot: Robot) -> list[evidence.Evidence]:
+        """What a picture of the hand, as it is, says; nothing without a camera that works."""
+        sensors = robot.description.sensors.values()
+        if not any(isinstance(sensor, CameraSensor) for sensor in sensors):
+            return []
+        try:
+            view = between_pads.between_pads(self.planning_scene.scene, take(robot, self.frames))
+            return [evidence.of_picture(view)]
+        except Failure as failure:
+            return [evidence.Evidence("picture", 0.0, failure.value.message)]
+
+    def _answer(self, grip: evidence.Grip, found: Sequence[evidence.Evidence]) -> None:
+        said = "; ".join(each.text for each in found) or "the robot has no hand"
+        data = {each.sense: round(each.odds, 1) for each in found}
+        if grip is evidence.Grip.UNKNOWN:
+            raise Failure(
+                "HOLDING_UNKNOWN",
+                f"{said}; to find out, bring the hand to where the camera sees it, lift it off "
+                "what it leans on, or open and close it where nothing can be lost",
+                **data,
+            )
+        if self.what == "holding" and grip is evidence.Grip.EMPTY:
+            raise Failure("NOT_HOLDING", said, **data)
+        if self.what == "not_holding" and grip is evidence.Grip.HELD:
+            held = self.planning_scene.held
+            what = "something" if held is None else f"a {held.object.category}"
+            raise Failure("HOLDING", f"the hand holds {what}: {said}", **data)
 
     def _localized(self) -> None:
         if is_localized(self.localization):

@@ -58,15 +58,16 @@ ONCE = [(name, code) for name in USED if name not in HANDLERS_OWN for code in po
 class Script:
     """What each start of a skill does: succeed, or fail with the next code scripted for it.
 
-    holding: whether the hand has the object, for the question that asks for it. cut_off: a pick
-    that fails has the object all the same.
+    holding: whether the hand has the object, for the questions that ask for it; None: it cannot be
+    told. cut_off: a pick that fails has the object all the same.
     """
 
     def __init__(self) -> None:
         self.failures: dict[str, list[str]] = {}
         self.always: dict[str, str] = {}
         self.starts: list[str] = []
-        self.holding = self.cut_off = False
+        self.holding: bool | None = False
+        self.cut_off = False
 
     def skills(self) -> dict[str, type[Skill]]:
         return {name: self._stand_in(name) for name in USED}
@@ -77,8 +78,12 @@ class Script:
         def work(self: Skill, robot: Robot) -> Run:
             script.starts.append(name)
             yield "working"
-            if name == "check" and self.what == "holding" and not script.holding:
-                raise Failure("NOT_HOLDING", "there is nothing in the hand")
+            if name == "check" and self.what in ("holding", "not_holding"):
+                if script.holding is None:
+                    raise Failure("HOLDING_UNKNOWN", "it cannot be told")
+                if script.holding is not (self.what == "holding"):
+                    code = "HOLDING" if script.holding else "NOT_HOLDING"
+                    raise Failure(code, "the hand says otherwise")
             code = next(iter(script.failures.get(name, [])), script.always.get(name))
             if code is not None:
                 if script.failures.get(name):
@@ -86,7 +91,8 @@ class Script:
                 script.holding &= code != "NOT_HOLDING"
                 script.holding |= name == "pick" and script.cut_off
                 raise Failure(code, "as the test wants it")
-            script.holding = (script.holding or name == "pick") and name not in LETS_GO
+            if script.holding is not None:
+                script.holding = (script.holding or name == "pick") and name not in LETS_GO
             for port in real.ports.values():
                 if port.direction == "out":
                     setattr(self, port.name, OUTPUTS[port.name])
@@ -103,10 +109,10 @@ def test_without_failures_each_step_runs_in_order() -> None:
     script = Script()
     assert bring(script).status == "SUCCESS"
     assert script.starts == [
-        "reset_pose", "navigate", "check", "detect_object", "navigate", "reset_pose",
-        "check", "detect_object", "pick", "reset_pose", "check", "check", "navigate", "check",
-        "check", "find_apriltag", "navigate", "find_apriltag", "detect_plane", "place",
-        "reset_pose",
+        "reset_pose", "check", "check", "navigate", "check", "detect_object", "navigate",
+        "reset_pose", "check", "check", "detect_object", "pick", "reset_pose", "check",
+        "check", "navigate", "check", "check", "find_apriltag", "navigate", "find_apriltag",
+        "detect_plane", "place", "reset_pose",
     ]  # fmt: skip
 
 
@@ -127,6 +133,37 @@ def test_what_a_grasp_that_was_cut_off_holds_is_not_let_fall(code: str) -> None:
     assert bring(script).status == "SUCCESS"
     assert script.starts.count("pick") == 1
     assert "release" not in script.starts
+
+
+def test_what_may_be_in_the_hand_is_neither_looked_for_nor_let_fall() -> None:
+    script = Script()
+    script.holding = None
+    report = bring(script)
+    assert report.failure is not None
+    assert "HOLDING_UNKNOWN" in [link.code for link in report.failure.chain()]
+    assert not {"detect_object", "pick", "release", "place"} & set(script.starts)
+
+
+def test_what_is_held_after_a_failure_is_not_looked_for_on_the_table() -> None:
+    script = Script()
+
+    class Stuck(list[str]):
+        """Fails the carrying pose three times, once the can is in the hand."""
+
+        left = 3
+
+        def __iter__(self):
+            take = script.holding and self.left > 0
+            self.left -= take
+            return iter(["ARM_STUCK"] if take else [])
+
+        def __bool__(self) -> bool:
+            return False
+
+    script.failures["reset_pose"] = Stuck()
+    assert bring(script).status == "SUCCESS"
+    assert script.starts.count("detect_object") == 2, "the two looks before the grasp"
+    assert script.starts.count("pick") == 1
 
 
 @pytest.mark.parametrize(("name", "code"), ONCE)

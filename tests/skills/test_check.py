@@ -8,11 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.check import Check
+from momantu_skills.check import FEELING, Check
+from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.hand import between_pads
+from momantu_skills.manipulation.hand.between_pads import View
+from momantu_skills.manipulation.scene.holding import Fingers
+from momantu_skills.manipulation.scene.payload import Weight
 
 from momantu_bt.claim import BaseAt, GripperOpen, Holding
 from momantu_bt.geometry import Pose2D
-from momantu_bt.testing import ScriptedRobot, run_skill
+from momantu_bt.testing import ScriptedRobot, run_skill, small_robot
 from momantu_bt.tree.load import TreeError, load
 
 
@@ -23,7 +28,15 @@ def check(what: str, *, robot: Any = None, place: str | None = None, **beliefs: 
         quality=beliefs.get("quality", 0.9),
     )
     held = SimpleNamespace(object=SimpleNamespace(category="can"))
-    scene = SimpleNamespace(held=held if beliefs.get("holding") else None)
+    holds = bool(beliefs.get("holding"))
+    weights = beliefs.get("weights", lambda: beliefs.get("weight"))
+    fingers = beliefs.get("fingers", Fingers(0.07, 45.0) if holds else Fingers(0.1, 0.0))
+    scene = SimpleNamespace(
+        held=held if holds else None,
+        holding=SimpleNamespace(fingers=fingers),
+        payload=SimpleNamespace(weigh=lambda robot: weights()),
+        scene=SimpleNamespace(config=SceneConfig()),
+    )
     services = {"localization": localization, "planning_scene": scene}
     inputs = {"what": what, "place": place}
     return run_skill(Check, robot=robot or ScriptedRobot(), inputs=inputs, services=services)
@@ -62,6 +75,93 @@ def test_what_holds(what: str, beliefs: Any) -> None:
 )
 def test_what_does_not_hold(what: str, beliefs: Any, code: str) -> None:
     assert check(what, **beliefs).code == code
+
+
+LIGHT, VAGUE, CAN = Weight(0.0, 0.25, 0.06), Weight(0.0, 0.25, 0.6), Weight(3.9, 0.25, 0.06)
+"""What the wrist measures of nothing, of nothing with a sensor that is not zeroed, of a can."""
+PRESSING = Fingers(0.07, 45.0)
+
+
+def look(monkeypatch: pytest.MonkeyPatch, view: View) -> None:
+    monkeypatch.setattr(between_pads, "between_pads", lambda scene, snapshot: view)
+    monkeypatch.setattr("momantu_skills.check.take", lambda robot, frames: None)
+
+
+@pytest.mark.parametrize(
+    ("beliefs", "code"),
+    [
+        ({"fingers": Fingers(0.04, 44.0)}, None),
+        ({"fingers": Fingers(0.083, 44.0), "weight": CAN}, None),
+        ({"fingers": Fingers(0.04, 0.2), "weight": LIGHT, "holding": True}, "NOT_HOLDING"),
+        ({"fingers": Fingers(0.0, 44.0), "holding": True}, "NOT_HOLDING"),
+    ],
+)
+def test_the_hand_is_asked_and_not_an_earlier_belief(beliefs: Any, code: str | None) -> None:
+    result = check("holding", **beliefs)
+    assert result.code == code, result.explain()
+    assert result.ticks == 1
+
+
+@pytest.mark.parametrize(
+    ("weight", "view", "holding", "not_holding"),
+    [
+        (VAGUE, View(60, 0.0), None, "HOLDING"),
+        (VAGUE, View(0, 1.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
+        (LIGHT, View(0, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
+        (LIGHT, View(60, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
+        (LIGHT, View(0, 1.0), "NOT_HOLDING", None),
+    ],
+)
+def test_what_the_fingers_do_not_decide_is_weighed_and_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+    weight: Weight,
+    view: View,
+    holding: str | None,
+    not_holding: str | None,
+) -> None:
+    """Fingers that press while nothing weighs: jammed ones, or something very light."""
+    look(monkeypatch, view)
+    for what, code in (("holding", holding), ("not_holding", not_holding)):
+        result = check(what, fingers=PRESSING, weight=weight)
+        assert result.code == code, result.explain()
+        assert result.phases == ("feeling",)
+        assert result.ticks == FEELING + 1
+
+
+def test_what_hangs_on_fingers_that_do_not_press_is_no_loss(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    look(monkeypatch, View(0, 0.0))
+    result = check("holding", fingers=Fingers(0.06, 0.1), weight=CAN, holding=True)
+    assert result.code == "HOLDING_UNKNOWN"
+    assert result.claim() is None, "it says neither"
+    assert "carries 3.9 N" in result.failure.message
+    assert "to find out" in result.failure.message
+    assert result.failure.data["fingers"] < 0.0 < result.failure.data["weight"]
+
+
+def test_one_noisy_weight_does_not_make_jammed_fingers_hold_something(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    look(monkeypatch, View(0, 0.0))
+    readings = iter([0.7, *[0.0, 0.1] * FEELING])
+
+    result = check("holding", fingers=PRESSING, weights=lambda: Weight(next(readings), 0.25, 0.06))
+    assert result.code == "HOLDING_UNKNOWN"
+
+
+def test_without_a_camera_that_works_it_cannot_tell() -> None:
+    robot = ScriptedRobot()
+    robot.dead.add(robot.description.camera()[0])
+    result = check("holding", robot=robot, fingers=PRESSING, weight=LIGHT)
+    assert result.code == "HOLDING_UNKNOWN"
+    assert "does not answer" in result.failure.message
+
+
+def test_a_robot_without_a_hand_holds_nothing() -> None:
+    handless = small_robot().model_copy(update={"end_effector": None})
+    assert check("holding", robot=ScriptedRobot(handless)).code == "NOT_HOLDING"
+    assert check("not_holding", robot=ScriptedRobot(handless)).status == "SUCCESS"
 
 
 def test_a_closed_gripper_is_not_open() -> None:

@@ -42,10 +42,6 @@ class SceneConfig(Tunables):
     surface_band: Size = Field(
         default=0.015, description="points within this height of a support surface belong to it"
     )
-    width_tolerance: Size = Field(
-        default=0.012,
-        description="change of the opening above which the held object counts as lost",
-    )
     closed_width: Size = Field(
         default=0.002,
         description="opening below which nothing is held: the thinnest wall is that of a bowl",

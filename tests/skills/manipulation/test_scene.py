@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline
-from momantu_skills.manipulation.scene.service import Holding
+from momantu_skills.manipulation.scene.holding import Holding
 from momantu_skills.manipulation.scene.surroundings import (
     EDGE,
     Support,
@@ -63,15 +63,56 @@ def test_a_grasp_is_believed_while_width_and_effort_agree() -> None:
     assert belief.last_contact == 1.0
 
 
-@pytest.mark.parametrize(("width", "effort"), [(0.04, 44.0), (0.07, 0.5), (0.09, 44.0)])
-def test_a_lasting_disagreement_ends_it_for_good(width: float, effort: float) -> None:
+@pytest.mark.parametrize("width", [0.04, 0.058, 0.083])
+def test_an_object_that_turns_between_the_fingers_is_still_held(width: float) -> None:
+    belief = holding()
+    for i in range(50):
+        belief.judge(state(width, 44.0, 2.0 + i))
+    assert belief.held is HELD
+    assert belief.last_contact == 1.0
+
+
+@pytest.mark.parametrize(("width", "effort"), [(0.07, 0.5), (0.04, 0.0), (0.001, 44.0)])
+def test_fingers_that_press_on_nothing_have_lost_it(width: float, effort: float) -> None:
     belief = holding()
     for i in range(CONFIG.doubt):
         assert belief.held is HELD
         belief.judge(state(width, effort, 2.0 + i))
     assert belief.held is None
     assert belief.last_contact == 2.0 + CONFIG.doubt - 1
-    belief.judge(state(0.07, 44.0))
+
+
+def lost() -> Holding:
+    belief = holding()
+    for i in range(CONFIG.doubt):
+        belief.judge(state(0.07, 0.0, 2.0 + i))
+    assert belief.held is None
+    return belief
+
+
+def press(belief: Holding, width: float) -> None:
+    for i in range(CONFIG.doubt):
+        belief.judge(state(width, 44.0, 10.0 + i))
+
+
+def test_fingers_that_press_again_before_they_opened_hold_it_again() -> None:
+    belief = lost()
+    press(belief, 0.06)
+    assert belief.held is HELD
+    assert belief.last_contact == 10.0 + CONFIG.doubt - 1
+
+
+def test_fingers_that_have_opened_hold_something_else() -> None:
+    belief = lost()
+    belief.judge(state(0.095, 0.0, 9.0))
+    press(belief, 0.07)
+    assert belief.held is None
+
+
+def test_what_was_released_is_not_held_again() -> None:
+    belief = lost()
+    belief.release(9.0)
+    press(belief, 0.07)
     assert belief.held is None
 
 

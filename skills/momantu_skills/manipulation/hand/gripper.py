@@ -10,8 +10,9 @@ from momantu_bt.failure import Failure
 from momantu_bt.frames import ODOM, FrameBuffer
 from momantu_bt.geometry import Array
 from momantu_bt.messages import GripperCommand
-from momantu_bt.robot import Robot, WristWrench
+from momantu_bt.robot import Robot
 from momantu_bt.skill import Clock
+from momantu_skills.manipulation.scene.payload import wrist_sensor
 
 RESTING = 3
 """Successive ticks without movement after which the fingers count as at rest."""
@@ -48,9 +49,7 @@ def move_gripper(
 
 def wrist_force(robot: Robot, frames: FrameBuffer) -> Array | None:
     """Force (3,) of the load on the wrist, in odom, N; None on robots without a force sensor."""
-    name = next(
-        (n for n, s in robot.description.sensors.items() if isinstance(s, WristWrench)), None
-    )
+    name = wrist_sensor(robot.description)
     if name is None:
         return None
     reading = robot.read(name)

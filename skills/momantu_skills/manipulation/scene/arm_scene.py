@@ -11,6 +11,8 @@ from momantu_bt.world import Surface
 
 with lazily():
     from momantu_skills.manipulation.scene import scene, site_obstacles
+    from momantu_skills.manipulation.scene.holding import Holding
+    from momantu_skills.manipulation.scene.payload import Payload
 
 
 class ArmScene(PlanningScene, Protocol):
@@ -24,6 +26,16 @@ class ArmScene(PlanningScene, Protocol):
     @property
     def floor_plan(self) -> site_obstacles.FloorPlan:
         """The obstacles that the site's maps know."""
+        ...
+
+    @property
+    def holding(self) -> Holding:
+        """What the fingers say of the held object."""
+        ...
+
+    @property
+    def payload(self) -> Payload:
+        """The weight in the hand."""
         ...
 
     def touched(self) -> None:

@@ -17,6 +17,8 @@ from momantu_bt.robot import Robot
 from momantu_bt.service import HeldObject, Service, ServiceContext, Snapshot
 from momantu_bt.world import Surface, Surfaces
 from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.scene.holding import Holding
+from momantu_skills.manipulation.scene.payload import Payload
 
 with lazily():
     from momantu_skills.manipulation.scene import scene, site_obstacles, surroundings
@@ -37,6 +39,7 @@ class PlanningSceneService(Service):
         self.frames: FrameBuffer = context.frames
         self.site = context.site
         self.holding = Holding(self.config)
+        self.payload = Payload(context.description, context.frames)
         self.scene: scene.Scene = _scene(context, self.config)
 
     @cached_property
@@ -45,9 +48,10 @@ class PlanningSceneService(Service):
         return site_obstacles.FloorPlan(self.site, self.frames)
 
     def update(self, robot: Robot, now: float) -> None:
-        """Check again whether the object is still held."""
+        """Check again whether the object is still held, and weigh the empty hand."""
         self._state = robot.state()
         self.holding.judge(self._state)
+        self.payload.update(robot, self._state)
 
     def published(self) -> Mapping[str, Any]:
         """See `publishes`."""
@@ -56,7 +60,7 @@ class PlanningSceneService(Service):
 
     @property
     def held(self) -> HeldObject | None:
-        """The held object, checked again at each update from gripper width and effort."""
+        """The held object; each update checks whether the fingers still press on something."""
         return self.holding.held
 
     @property
@@ -65,7 +69,7 @@ class PlanningSceneService(Service):
         return self.holding.last_contact
 
     def grasped(self, thing: DetectedObject, grasp_from_object: Transform) -> None:
-        """Report the object just grasped; it counts as held while width and effort agree."""
+        """Report the object just grasped; it is held while the fingers press on something."""
         held = HeldObject(thing, grasp_from_object)
         self.holding.claim(held, self._state.gripper_width, self._state.stamp)
 
@@ -131,52 +135,3 @@ class PlanningSceneService(Service):
 
 def _scene(context: ServiceContext, config: SceneConfig) -> scene.Scene:
     return scene.Scene(context.description, config)
-
-
-class Holding:
-    """Assumes that an object is held while opening and effort agree with it.
-
-    A grasp starts with `claim`. After `doubt` successive updates that contradict it, the object
-    counts as lost, and the time counts as a contact, because the object has touched something.
-    """
-
-    def __init__(self, config: SceneConfig) -> None:
-        self._config = config
-        self._width = 0.0
-        self._doubts = 0
-        self.held: HeldObject | None = None
-        self.last_contact = -math.inf
-
-    def claim(self, held: HeldObject, width: float, now: float) -> None:
-        """Report a grasp at an opening of `width` m."""
-        self.held, self._width, self._doubts = held, width, 0
-        self.last_contact = now
-
-    def _by_wall(self) -> bool:
-        """Whether the fingers are closer together than the object is anywhere across."""
-        assert self.held is not None
-        return self._width + self._config.width_tolerance < min(self.held.object.size[:2])
-
-    def touched(self, now: float) -> None:
-        """Report that the hand has touched or released something."""
-        self.last_contact = now
-
-    def release(self, now: float) -> None:
-        """Forget the held object, which was released."""
-        self.held, self.last_contact = None, now
-
-    def judge(self, state: RobotState) -> None:
-        """Compare the newest state with what a held object would cause."""
-        if self.held is None:
-            return
-        config = self._config
-        narrower = self._width - state.gripper_width
-        closed = state.gripper_width < config.closed_width
-        moved = closed or abs(narrower) > config.width_tolerance
-        if self._by_wall() and narrower > 0.0:
-            moved = closed  # a leaning wall comes to lie flat between the pads
-        weak = state.gripper_effort < config.least_effort
-        self._doubts = self._doubts + 1 if moved or weak else 0
-        if self._doubts >= config.doubt:
-            self.held = None
-            self.last_contact = state.stamp

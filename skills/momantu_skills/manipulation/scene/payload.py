@@ -1,0 +1,131 @@
+"""The weight in the hand: the load on the wrist beside that of the empty hand."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from momantu_bt.failure import Failure
+from momantu_bt.frames import ODOM, FrameBuffer
+from momantu_bt.geometry import Array
+from momantu_bt.messages import RobotState, WrenchReading
+from momantu_bt.robot import Robot, RobotDescription, WristWrench
+
+EMPTY = 20
+"""Readings with the empty hand of which the median is used."""
+APART = 0.25
+"""Time between two of them, s: they cover 5 s, and a short contact of the open hand, as at the end
+of an approach, does not change their median."""
+OPEN = 0.95
+"""Share of the widest opening from which the hand is open and holds nothing."""
+AT_REST = 0.02
+"""Fastest joint, rad/s or m/s, and base, at which the load is weight alone. A hand of 1.5 kg that
+is accelerated by 1 m/s2 adds 1.5 N."""
+HEAVY = 3.0
+"""Load of the empty hand above which the sensor measures the hand's own weight too, N. The load
+then depends on how the hand is turned."""
+TURNED = math.radians(15.0)
+"""Largest turn of such a hand, rad, at which its load with nothing in it still counts: a sensor of
+10 N is then wrong by 0.3 N along the vertical."""
+BIAS = 0.6
+"""Standard deviation of the load while the empty hand has not been measured, N, per axis."""
+NOISE = 0.25
+"""Standard deviation of one reading, N."""
+MEDIAN = 1.25
+"""Standard deviation of a median, relative to that of a mean."""
+
+
+@dataclass(frozen=True, slots=True)
+class Weight:
+    """A weight, N.
+
+    noise: standard deviation of what differs from reading to reading, N. shared: the same of the
+    error that all readings have in common.
+    """
+
+    value: float
+    noise: float
+    shared: float
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the value, N."""
+        return math.hypot(self.noise, self.shared)
+
+
+def mean_weight(weights: Sequence[Weight]) -> Weight:
+    """The mean of several readings: their noise averages out, and what they share does not."""
+    value, noise, shared = np.mean([(w.value, w.noise, w.shared) for w in weights], axis=0)
+    return Weight(float(value), float(noise) / math.sqrt(len(weights)), float(shared))
+
+
+def wrist_sensor(description: RobotDescription) -> str | None:
+    """Name of the sensor of the load on the wrist; None on robots without one."""
+    sensors = description.sensors.items()
+    return next((name for name, sensor in sensors if isinstance(sensor, WristWrench)), None)
+
+
+class Payload:
+    """Learns the load of the empty hand while the hand is open, and weighs what it holds."""
+
+    def __init__(self, description: RobotDescription, frames: FrameBuffer) -> None:
+        self._description, self._frames = description, frames
+        self._empty: deque[Array] = deque(maxlen=EMPTY)
+        self._up: Array | None = None
+        self._measured = -math.inf
+
+    def update(self, robot: Robot, state: RobotState) -> None:
+        """Measure the empty hand if it is open and at rest."""
+        effector = self._description.end_effector
+        if effector is None or not at_rest(state):
+            return
+        soon = state.stamp < self._measured + APART
+        if soon or state.gripper_width < OPEN * effector.max_width:
+            return
+        load = self._load(robot)
+        if load is not None:
+            self._empty.append(load[0])
+            self._up, self._measured = load[1], state.stamp
+
+    def weigh(self, robot: Robot) -> Weight | None:
+        """Weight in the hand now.
+
+        None without a sensor, in motion, or where the empty hand's load is not known well enough.
+        """
+        if not at_rest(robot.state()):
+            return None
+        load = self._load(robot)
+        if load is None:
+            return None
+        force, up = load
+        if self._up is None:
+            return Weight(-float(force @ up), NOISE, BIAS)
+        empty = np.median(self._empty, axis=0)
+        turned = math.acos(float(np.clip(self._up @ up, -1.0, 1.0)))
+        if np.linalg.norm(empty) > HEAVY and turned > TURNED:
+            return None
+        shared = MEDIAN * NOISE / math.sqrt(len(self._empty))
+        return Weight(-float((force - empty) @ up), NOISE, shared)
+
+    def _load(self, robot: Robot) -> tuple[Array, Array] | None:
+        """The force (3,) and the upward direction (3,), both in the sensor's frame."""
+        name = wrist_sensor(robot.description)
+        if name is None:
+            return None
+        try:
+            reading = robot.read(name)
+            rotation = self._frames.lookup(ODOM, reading.frame, reading.stamp).rotation
+        except Failure:
+            return None
+        assert isinstance(reading, WrenchReading)
+        return reading.force, rotation[2]
+
+
+def at_rest(state: RobotState) -> bool:
+    """Whether joints and base stand still, as far as their reported speeds tell."""
+    fastest = float(np.abs(state.velocities).max(initial=0.0))
+    return max(fastest, abs(state.linear), abs(state.angular)) < AT_REST

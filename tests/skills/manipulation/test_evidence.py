@@ -1,0 +1,101 @@
+"""What each sense says of the hand, and what all say together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.hand.between_pads import View
+from momantu_skills.manipulation.hand.evidence import (
+    SURE,
+    Evidence,
+    Grip,
+    of_fingers,
+    of_picture,
+    of_weight,
+    weighed,
+)
+from momantu_skills.manipulation.scene.holding import Fingers
+from momantu_skills.manipulation.scene.payload import Weight
+
+CONFIG = SceneConfig()
+PRESSING, FREE, OPENED = Fingers(0.07, 45.0), Fingers(0.04, 0.1), Fingers(0.1, 0.1)
+NOTHING_SEEN = View(0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("fingers", "weight", "grip"),
+    [
+        (PRESSING, None, Grip.HELD),
+        (FREE, None, Grip.EMPTY),
+        (PRESSING, Weight(3.9, 0.25, 0.1), Grip.HELD),
+        (FREE, Weight(0.1, 0.25, 0.1), Grip.EMPTY),
+        (PRESSING, Weight(0.6, 0.08, 0.06), Grip.HELD),
+        (PRESSING, Weight(0.0, 0.25, 0.1), Grip.UNKNOWN),
+        (FREE, Weight(3.9, 0.25, 0.1), Grip.UNKNOWN),
+        (OPENED, Weight(3.9, 0.25, 0.1), Grip.EMPTY),
+        (Fingers(0.07, 3.0), None, Grip.UNKNOWN),
+        (Fingers(0.001, 45.0), None, Grip.EMPTY),
+        (Fingers(math.nan, math.nan), None, Grip.UNKNOWN),
+    ],
+)
+def test_fingers_and_weight_together(fingers, weight, grip) -> None:
+    evidence = [of_fingers(fingers, 0.1, CONFIG)]
+    evidence += [] if weight is None else [of_weight(weight)]
+    assert weighed(evidence) is grip
+
+
+@pytest.mark.parametrize(
+    ("view", "grip"),
+    [
+        (View(80, 0.0), Grip.HELD),
+        (View(0, 0.9), Grip.UNKNOWN),
+        (NOTHING_SEEN, Grip.UNKNOWN),
+    ],
+)
+def test_a_picture_decides_what_fingers_and_weight_do_not(view: View, grip: Grip) -> None:
+    """Fingers that press while nothing weighs: jammed, or around something light."""
+    evidence = [
+        of_fingers(PRESSING, 0.1, CONFIG),
+        of_weight(Weight(0.0, 0.25, 0.1)),
+        of_picture(view),
+    ]
+    assert weighed(evidence) is grip
+
+
+def test_nothing_known_is_no_answer() -> None:
+    assert weighed([]) is Grip.UNKNOWN
+
+
+@given(st.lists(st.floats(-6, 6), max_size=5))
+def test_an_answer_takes_a_hundred_to_one(odds: list[float]) -> None:
+    grip = weighed([Evidence("any", each, "") for each in odds])
+    total = sum(odds)
+    assert (grip is Grip.HELD) is (total >= SURE)
+    assert (grip is Grip.EMPTY) is (total <= -SURE)
+
+
+@given(st.floats(0.0, 20.0), st.floats(0.05, 1.0))
+def test_the_heavier_the_hand_the_likelier_it_holds_something(weight: float, sigma: float) -> None:
+    assert (
+        of_weight(Weight(weight + 0.5, sigma, 0.0)).odds
+        >= of_weight(Weight(weight, sigma, 0.0)).odds - 1e-9
+    )
+
+
+def test_a_hand_that_is_pushed_up_says_nothing() -> None:
+    assert of_weight(Weight(-8.0, 0.25, 0.1)).odds == 0.0
+
+
+def test_a_weight_is_as_sure_as_its_sensor() -> None:
+    assert abs(of_weight(Weight(0.0, 0.25, 0.6)).odds) < abs(of_weight(Weight(0.0, 0.25, 0.1)).odds)
+
+
+@pytest.mark.parametrize("effort", np.linspace(-3.0, 50.0, 12))
+def test_the_harder_the_fingers_press_the_likelier_it_holds_something(effort: float) -> None:
+    harder = of_fingers(Fingers(0.05, effort + 1.0), 0.1, CONFIG).odds
+    assert harder >= of_fingers(Fingers(0.05, effort), 0.1, CONFIG).odds
