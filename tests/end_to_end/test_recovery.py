@@ -19,7 +19,7 @@ TREE = Path(__file__).resolve().parents[2] / "trees" / "bring_object.yaml"
 INSTALLED = Registry.installed()
 USED = (
     "navigate", "relocalize", "check", "detect_object", "find_apriltag", "detect_plane", "pick",
-    "place", "reset_pose", "release",
+    "place", "reset_pose", "release", "find_surface",
 )  # fmt: skip
 NEVER_HERE = {
     ("navigate", "BAD_GOAL"), ("reset_pose", "UNKNOWN_POSE"), ("check", "BAD_QUESTION"),
@@ -29,7 +29,7 @@ NEVER_HERE = {
 FINAL = {("place", "TOPPLED"), ("place", "LOST")}
 """The object lies somewhere: no skill picks up what has fallen."""
 LETS_GO = {"place", "release"}
-HANDLERS_OWN = {"relocalize", "release"}
+HANDLERS_OWN = {"relocalize", "release", "find_surface"}
 """Skills that only handlers start."""
 
 POSE = Pose(Transform((1.0, 0.0, 0.8)), "odom", 0.0)
