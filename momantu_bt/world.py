@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from types import MappingProxyType
@@ -124,6 +124,10 @@ class Site:
     def known_places(self) -> tuple[str, ...]:
         """Names of places and surfaces."""
         return (*self.places, *self.surfaces)
+
+    def of_a_run(self) -> Site:
+        """The same for one run, whose skills may correct where a surface stands."""
+        return replace(self, surfaces=Surfaces(self.surfaces))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -28,7 +28,6 @@ from momantu_bt.skill import Skill
 from momantu_bt.tree.check.root_keys import ROBOT_KEY
 from momantu_bt.tree.model import Document
 from momantu_bt.values.convert import natural
-from momantu_bt.world import Surfaces
 from momantu_bt.world_plugins import NoWorld
 
 
@@ -67,7 +66,7 @@ def set_up(
     services = Services({name: made(name, kind) for name, kind in needed.items()}, actuators)
     frames = FrameBuffer(stage.robot.description.kinematics())
     callable_skills = {name: stage.skill(kind) for name, kind in called.items()}
-    site = replace(stage.site, surfaces=Surfaces(stage.site.surfaces))
+    site = stage.site.of_a_run()
     context.body = Body(actuators, frames, site, services.running, callable_skills)
     return Setting(context, services, stage, stepper)
 

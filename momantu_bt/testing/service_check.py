@@ -117,7 +117,7 @@ class _Runs:
         services = Services(instances, Actuators(robot))
         frames = FrameBuffer(robot.description.kinematics())
         frames.add_state(robot.state())
-        site = replace(world.site, services={self.name: self.parameters})
+        site = replace(world.site.of_a_run(), services={self.name: self.parameters})
         services.start(site, frames, world, self.seed)
         if blind:
             robot.dead = set(robot.description.sensors)

@@ -106,7 +106,7 @@ def run_skill(
     context = SkillContext(
         clock=place,
         frames=running.frames,
-        site=place.site,
+        site=running.site,
         services=running.services,
         skills=SKILLS if skills is None else skills,
         reporter=reporter,
@@ -201,6 +201,7 @@ class _Services:
         self, world: World, services: dict[str, Any], frames: FrameBuffer | None, seed: int
     ) -> None:
         self.services = services
+        self.site = world.site if frames is not None else world.site.of_a_run()
         self._world = world
         self.frames = frames or FrameBuffer(world.robot.description.kinematics())
         ticking = {n: s for n, s in services.items() if isinstance(s, Service)}
@@ -208,7 +209,7 @@ class _Services:
         if frames is None:
             self.frames.add_state(world.robot.state())
             self._ticking.start(
-                world.site, self.frames, world, seed, other=self.services.__getitem__
+                self.site, self.frames, world, seed, other=self.services.__getitem__
             )
 
     def update(self) -> None:

@@ -34,8 +34,8 @@ with lazily():
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import trip
     from momantu_skills.navigation.drive.vehicle import Vehicle
-    from momantu_skills.navigation.map.believed import raster
-    from momantu_skills.navigation.plan.lookouts import lookouts
+    from momantu_skills.navigation.map import believed
+    from momantu_skills.navigation.plan import lookouts
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
     from momantu_skills.perception.surface import tops
@@ -164,7 +164,7 @@ class FindSurface(Skill):
         part = tops.nearest([s.top for s in self._seen if s.why == PART], at)
         for middle in ([] if part is None else [part.pose]) + [at]:
             vehicle.sense()
-            stands = lookouts(
+            stands = lookouts.lookouts(
                 (middle.x, middle.y), off, vehicle.pose(), self._from, vehicle.costmap, surface
             )
             if stands and (yield from _went(vehicle, controller, stands)):
@@ -224,7 +224,7 @@ class FindSurface(Skill):
 
     def _known_share(self, top: tops.Top, costmap: Any, surface: Surface) -> float:
         """The share of a patch that the map knows, where the surface is not drawn itself."""
-        cells = raster(costmap.grid)
+        cells = believed.raster(costmap.grid)
         patch = cells.on(replace(surface, map_from_surface=top.pose, size=top.size))
         other = costmap.known & ~cells.on(surface, DRAWN)
         return float((patch & other).sum()) / max(int(patch.sum()), 1)

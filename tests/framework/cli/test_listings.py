@@ -157,7 +157,8 @@ def test_a_bundled_tree_is_shown_with_all_its_trees_and_values(capsys: Out, name
 
     document = load(name).document
     lines = printed(capsys, "show", name).splitlines()
-    assert lines[0].endswith(f": {document.main} in {document.world}")
+    where = "" if document.world is None else f" in {document.world}"
+    assert lines[0].endswith(f": {document.main}{where}")
     assert [line.split()[0] for line in lines[1 : len(document.values) + 1]] == [*document.values]
     heads = [line.split()[0] for line in lines[1:] if line and not line.startswith(" ")]
     assert heads == [document.main, *(each for each in document.trees if each != document.main)]

@@ -161,3 +161,11 @@ def test_a_comment_at_any_line_survives(path: Path) -> None:
             document, problems = read(text, str(path))
             assert problems.sorted() == []
             assert _texts(write(document)) == _texts(text), f"{path}:{index + 1}: {new}"
+
+
+@pytest.mark.parametrize("line", ["      cycles: 3  # here", "      # here\n      cycles: 3"])
+def test_a_comment_in_a_node_that_becomes_a_modifier_survives(line: str) -> None:
+    text = f"momantu_bt: 1\ntrees:\n  A:\n    repeat:\n{line}\n      child: {{wait: 1 s}}\n"
+    document, problems = read(text, "t.yaml")
+    assert problems.sorted() == []
+    assert "repeat: 3  # here" in write(document)

@@ -157,7 +157,8 @@ class NodeWriter:
             pieces += self._keyed(inner, lead, pad, bool(entries or modifiers))
             pieces += entries
         for outer in modifiers:
-            remark = tuple(Beside(c) for c in outer.end_comments)
+            inside = [c for each in outer.port_comments.values() for c in each]
+            remark = tuple(Beside(c) for c in (*inside, *outer.end_comments))
             pieces += [*above(remark, pad), pad + self._modifier(outer) + beside(remark)]
         return pieces
 
