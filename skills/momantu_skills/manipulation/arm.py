@@ -234,7 +234,7 @@ class Arm:
     def _way_out(self, path: Array) -> bool:
         state, half = self.state, self.open_width / 2 + AROUND
         tip = self.group.tip_pose(self.joints) @ self.scene.model.tip_from_grasp
-        cut = (state.odom_from_base @ tip, (half, half, half))
+        cut = scene.Cut(state.odom_from_base @ tip, (half, half, half))
         return self.scene.world(state, None, 0.0, width=self.open_width, cut=cut).path_free(
             path[1:]
         )

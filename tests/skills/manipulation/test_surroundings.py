@@ -131,9 +131,9 @@ def seen_from(eye: np.ndarray, pose: Transform, size: tuple[float, float, float]
 def test_nothing_remains_of_a_box_that_is_seen_over_its_corner(degrees: int) -> None:
     pose = Pose2D(0.8, 0.1, math.radians(degrees)).transform(0.8)
     around = seen_from(np.array([0.0, 0.0, 1.1]), pose, BOX)
-    assert len(around.without(pose, GROWN).cells) == 0
+    assert len(around.without(pose, GROWN, filled=True).cells) == 0
     # without the faces, what is assumed behind its edges lies beside it
-    assert len(replace(around, faces=None).without(pose, (0.04, 0.06, 0.08)).cells) > 0
+    assert len(replace(around, faces=None).without(pose, (0.04, 0.06, 0.08), filled=True).cells) > 0
 
 
 @given(st.floats(0.09, 0.3), st.floats(-1.5, 1.5))
@@ -144,8 +144,8 @@ def test_a_neighbour_and_what_may_be_behind_it_remain(away: float, turn: float) 
     alone, near = seen_from(eye, pose, BOX), seen_from(eye, other, (0.05, 0.05, 0.14))
     faces = np.vstack([alone.faces, near.faces])  # type: ignore[list-item]
     both = replace(alone, cells=np.vstack([alone.cells, near.cells]), faces=faces)
-    left = both.without(pose, GROWN).cells
-    outside = near.without(pose, GROWN).cells
+    left = both.without(pose, GROWN, filled=True).cells
+    outside = near.without(pose, GROWN, filled=True).cells
     assert {tuple(cell) for cell in outside} <= {tuple(cell) for cell in left}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
 from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
+from momantu_skills.manipulation.scene.scene import Cut
 
 SEEDS = 6
 """Start postures of the inverse kinematics per grasp: they find a solution for three of four
@@ -47,12 +49,16 @@ SKIN = 0.004
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """A grasp with its motions: approach (k, n) ends at the grasp, lift (m, n) begins there."""
+    """A grasp with its motions: approach (k, n) ends at the grasp, lift (m, n) begins there.
+
+    cut: where cells did not count, as they are the object's.
+    """
 
     grasp: Grasp
     approach: Array
     lift: Array
     cost: float
+    cut: Cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +81,10 @@ def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
     """
     reaches = reachable(arm, thing, lift)
     state = arm.state
-    cut = (thing.pose.transform, _cut(thing))
     base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
     target = Obstacle("target", base_from_object.apply(object_corners(thing, SKIN)))
     goals = [reach.approach[0] for reach in reaches]
-    transit = arm.route(goals, None, width=arm.open_width, cut=cut, extra=(target,))
+    transit = arm.route(goals, None, width=arm.open_width, cut=reaches[0].cut, extra=(target,))
     end = transit[-1].positions[-1] if transit else arm.joints
     reach = min(reaches, key=lambda r: float(np.abs(arm.turned(r.approach[0], end) - end).max()))
     approach, up = arm.turned(reach.approach, end), arm.turned(reach.lift, end)
@@ -94,6 +99,9 @@ def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
 
 def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     """Grasps with possible approach, closing and lift, best first.
+
+    What is assumed behind the object's visible faces counts as an obstacle, unless nothing is left
+    then.
 
     Raises:
         Failure: NO_GRASP, with the number of grasps that failed at each step.
@@ -114,21 +122,17 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
             f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
             f"{effector.max_width * 1000:.0f} mm{rim}",
         )
-    check = _Check(arm, thing, lift)
-    found: list[Reach] = []
-    for count, (grasp, q, cost) in enumerate(_postures(arm, thing, grasps)):
-        if len(found) >= ENOUGH or count >= TESTED:
-            break
-        reach = check(grasp, q, cost)
-        if reach is not None:
-            found.append(reach)
-    if not found:
-        raise Failure(
-            "NO_GRASP",
-            f"none of {len(grasps)} grasps can be approached, held and lifted: {check.summary()}",
-            **check.lost,
-        )
-    return found
+    postures = list(_postures(arm, thing, grasps))[:TESTED]
+    for filled in (False, True):
+        check = _Check(arm, thing, lift, Cut(thing.pose.transform, _cut(thing), filled))
+        found = list(islice(filter(None, (check(*posture) for posture in postures)), ENOUGH))
+        if found:
+            return found
+    raise Failure(
+        "NO_GRASP",
+        f"none of {len(grasps)} grasps can be approached, held and lifted: {check.summary()}",
+        **check.lost,
+    )
 
 
 def _postures(
@@ -193,10 +197,9 @@ def _upright_postures(
 class _Check:
     """Checks hand, approach and lift of a posture at a grasp; counts the failures per step."""
 
-    def __init__(self, arm: Arm, thing: DetectedObject, lift: float) -> None:
+    def __init__(self, arm: Arm, thing: DetectedObject, lift: float, cut: Cut) -> None:
         self._arm, self._thing, self._lift = arm, thing, lift
         self._state: RobotState = arm.state
-        cut = (thing.pose.transform, _cut(thing))
         self._cut = cut
         margin = arm.hand.near_margin
         self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
@@ -222,7 +225,7 @@ class _Check:
         if lift is None or not self._carrying(grasp).path_free(lift):
             self.lost["lift"] += 1
             return None
-        return Reach(grasp, approach[::-1], lift, cost)
+        return Reach(grasp, approach[::-1], lift, cost, self._cut)
 
     def _carrying(self, grasp: Grasp) -> CollisionWorld:
         held = HeldObject(self._thing, grasp.object_from_grasp.inverse())

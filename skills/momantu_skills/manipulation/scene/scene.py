@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,10 +52,19 @@ DISC = 0.25
 """Radius of the assumed support below an object of which too little is visible, m."""
 FLOOR_BAND = 0.06
 """Height above the floor below which points belong to the floor, m."""
-Cut: TypeAlias = tuple[Transform, tuple[float, float, float]]
-"""A box: `odom_from_box`, and half its edges in m."""
 SEEN_THROUGH = 0.03
 """An old cell is deleted if the picture shows something this much behind it, m."""
+
+
+class Cut(NamedTuple):
+    """A box in which cells do not count: `odom_from_box`, and half its edges in m.
+
+    filled: cells that are only filled in behind faces in the box do not count either.
+    """
+
+    pose: Transform
+    half_size: tuple[float, float, float]
+    filled: bool = False
 
 
 class Scene:

@@ -88,14 +88,16 @@ class Surroundings:
     faces: Array | None = None
     fill: float = 0.0
 
-    def without(self, pose: Transform, half_size: tuple[float, float, float]) -> Surroundings:
+    def without(
+        self, pose: Transform, half_size: tuple[float, float, float], filled: bool = False
+    ) -> Surroundings:
         """A copy without the cells in a box (`odom_from_box`, half its edges in m).
 
-        Cells beside the box that are filled in behind faces in it are left out too: the thickness
-        that is assumed behind the edge of a box seen over a corner lies outside of it.
+        filled: cells beside the box that are filled in behind faces in it are left out too. The
+        thickness that is assumed behind the edge of a box seen over a corner lies outside of it.
         """
         kept = self.cells[~_in_box(self.cells, pose, half_size)]
-        if self.faces is None or not len(kept):
+        if not filled or self.faces is None or not len(kept):
             return replace(self, cells=kept)
         x, y, z = half_size
         beside = _in_box(kept, pose, (x + self.fill, y + self.fill, z))
