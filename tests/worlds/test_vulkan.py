@@ -29,13 +29,10 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A real shared library to unpack and load: one that this Python came with."""
-    here = [
-        Path(line.split()[-1])
-        for line in Path("/proc/self/maps").read_text().splitlines()
-        if line.endswith((".so", ".so.6"))
-    ]
-    return next(path for path in here if path.is_file())
+    """A real shared library to unpack and load. A second copy of the C library's mathematics is
+    harmless; one of an extension module may end the process."""
+    mapped = Path("/proc/self/maps").read_text().splitlines()
+    return next(Path(line.split()[-1]) for line in mapped if line.endswith("/libm.so.6"))
 
 
 def lay_out(library: Path, cache: Path) -> private.PrivateDriver:
