@@ -29,8 +29,10 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def library(tmp_path: Path) -> Path:
-    """A real shared library to unpack and load. A second copy of the C library's mathematics is
-    harmless; one of an extension module may end the process."""
+    """A real shared library to unpack and load: the C library's mathematics.
+
+    A second copy of an extension module may end the process.
+    """
     mapped = Path("/proc/self/maps").read_text().splitlines()
     return next(Path(line.split()[-1]) for line in mapped if line.endswith("/libm.so.6"))
 
