@@ -95,6 +95,36 @@ def share(grid: Bytes, cells: NDArray[np.int64], right: int, up: int, block: int
 
 
 @numba.njit(cache=True)
+def blocks(
+    bound: Bytes,
+    corner: Array,
+    cell: float,
+    points: Array,
+    expected: Array,
+    turns: int,
+    turn_step: float,
+    steps: int,
+    block: int,
+) -> tuple[NDArray[np.int64], Array]:
+    """The largest scores of blocks of poses around an expected one (3,).
+
+    turns, steps: how many steps of yaw and blocks to each side. Returns the cells of points (n, 2)
+    at each yaw, (2 turns + 1, n, 2), and the bounds, by yaw, column and row of the block.
+    """
+    edge = 2 * steps + 1
+    cells = np.empty((2 * turns + 1, points.shape[0], 2), dtype=np.int64)
+    bounds = np.empty((2 * turns + 1) * edge * edge)
+    for t in range(2 * turns + 1):
+        yaw = expected[2] + (t - turns) * turn_step
+        cells[t] = cells_at(points, np.array([expected[0], expected[1], yaw]), corner, cell)
+        for u in range(edge):
+            for v in range(edge):
+                right, up = (u - steps) * block, (v - steps) * block
+                bounds[(t * edge + u) * edge + v] = share(bound, cells[t], right, up, block)
+    return cells, bounds
+
+
+@numba.njit(cache=True)
 def best_pose(
     grid: Bytes,
     bound: Bytes,
@@ -113,16 +143,7 @@ def best_pose(
     turns = math.ceil(window[1] / turn_step)
     steps = math.ceil(window[0] / cell / BLOCK)
     edge = 2 * steps + 1
-    cells = np.empty((2 * turns + 1, points.shape[0], 2), dtype=np.int64)
-    bounds = np.empty((2 * turns + 1) * edge * edge)
-    for t in range(2 * turns + 1):
-        yaw = expected[2] + (t - turns) * turn_step
-        cells[t] = cells_at(points, np.array([expected[0], expected[1], yaw]), corner, cell)
-        for u in range(edge):
-            for v in range(edge):
-                at = (t * edge + u) * edge + v
-                right, up = (u - steps) * BLOCK, (v - steps) * BLOCK
-                bounds[at] = share(bound, cells[t], right, up, BLOCK)
+    cells, bounds = blocks(bound, corner, cell, points, expected, turns, turn_step, steps, BLOCK)
     best = -1e9
     pose = expected.copy()
     for at in np.argsort(-bounds, kind="mergesort"):

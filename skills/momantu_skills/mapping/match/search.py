@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_skills.mapping.match.likelihood import Bytes, cells_at, share
+from momantu_skills.mapping.match.likelihood import Bytes, blocks, share
 
 LEVELS = 5
 """Levels above the grid: blocks of 32 cells."""
@@ -58,17 +58,9 @@ def search(
     turns = math.ceil(window[1] / turn_step)
     steps = math.ceil(window[0] / cell / block)
     edge = 2 * steps + 1
-    cells = np.empty((2 * turns + 1, points.shape[0], 2), dtype=np.int64)
-    bounds = np.empty((2 * turns + 1) * edge * edge)
-    for t in range(2 * turns + 1):
-        yaw = expected[2] + (t - turns) * turn_step
-        cells[t] = cells_at(points, np.array([expected[0], expected[1], yaw]), corner, cell)
-        for u in range(edge):
-            for v in range(edge):
-                right, up = (u - steps) * block, (v - steps) * block
-                bounds[(t * edge + u) * edge + v] = share(
-                    levels[LEVELS], cells[t], right, up, block
-                )
+    cells, bounds = blocks(
+        levels[LEVELS], corner, cell, points, expected, turns, turn_step, steps, block
+    )
     best = least
     pose = expected.copy()
     for at in np.argsort(-bounds, kind="mergesort"):
