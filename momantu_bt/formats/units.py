@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 
+from momantu_bt.errors import InputError
 from momantu_bt.formats.names import nearest
 
 _DEGREE = math.pi / 180.0
@@ -122,6 +123,24 @@ def in_unit(text: str, unit: str) -> float | None:
     """
     found = in_one_of(text, (unit,))
     return None if found is None else found.value
+
+
+def option_in_unit(option: str, text: str, unit: str, such_as: str) -> float:
+    """What an option of the command line gives, as a number in the SI unit `unit`.
+
+    such_as: a valid text, for the message.
+
+    Raises:
+        InputError: the text has no unit, or a wrong one; names the option.
+    """
+    try:
+        value = in_unit(text, unit)
+    except UnitError as error:
+        raise InputError(f"{option}: {error}") from None
+    if value is None:
+        expected = f"{_WHAT[unit]} with its unit, such as {such_as}"
+        raise InputError(f"{option} {text!r}; expected {expected}")
+    return value
 
 
 def in_one_of(text: str, units: Iterable[str]) -> Quantity | None:

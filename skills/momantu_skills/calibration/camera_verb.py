@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.errors import ExitCode
 from momantu_bt.formats.files import check_writable, write_whole
-from momantu_bt.formats.units import UnitError, in_unit
+from momantu_bt.formats.units import option_in_unit
 from momantu_bt.lazy import lazily
 from momantu_skills.calibration.models import Model
 
@@ -68,10 +68,10 @@ def camera(
             check_writable(path)
     given = boards.read_board(
         board,
-        _length("--square", square),
-        _length("--marker", marker),
+        option_in_unit("--square", square, "m", "25mm"),
+        option_in_unit("--marker", marker, "m", "18mm"),
         dictionary,
-        _length("--gap", gap),
+        option_in_unit("--gap", gap, "m", "9mm"),
     )
     shown = pictures.read_pictures(folder, given)
     found = lens.fit(given, shown.seen, shown.size, model)
@@ -91,14 +91,3 @@ def camera(
         write_whole(plot, coverage.plot(shown, found))
         typer.echo(f"drawn in {plot}")
     return ExitCode.SUCCESS
-
-
-def _length(option: str, text: str) -> float:
-    """A length with its unit, m."""
-    try:
-        value = in_unit(text, "m")
-    except UnitError as error:
-        raise InputError(f"{option}: {error}") from None
-    if value is None:
-        raise InputError(f"{option} {text!r}; expected a length with its unit, such as 25mm")
-    return value

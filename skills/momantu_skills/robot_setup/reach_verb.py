@@ -9,7 +9,7 @@ import typer
 
 from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import check_writable, write_whole
-from momantu_bt.formats.units import UnitError, in_unit
+from momantu_bt.formats.units import option_in_unit
 from momantu_bt.lazy import lazily
 from momantu_bt.robots.plugins import load_robot
 
@@ -46,14 +46,15 @@ def reach(
     """
     if output is not None:
         check_writable(output)
-    band = _length("--bottom", bottom), _length("--top", top)
-    if not band[0] < band[1]:
+    low = option_in_unit("--bottom", bottom, "m", "60cm")
+    high = option_in_unit("--top", top, "m", "60cm")
+    if not low < high:
         raise InputError(f"--bottom {bottom} is not below --top {top}")
     description = load_robot(robot)
     found = reaching.reach(description, postures, seed)
     places = found.middles()
     far = np.hypot(places[:, 0], places[:, 1])
-    within = (places[:, 2] > band[0]) & (places[:, 2] < band[1])
+    within = (places[:, 2] > low) & (places[:, 2] < high)
     half = reaching.CELL / 2
     typer.echo(f"{description.name}: {postures} postures, cells of {reaching.CELL:g} m")
     typer.echo(
@@ -65,17 +66,6 @@ def reach(
     else:
         typer.echo(f"between {bottom} and {top} the hand is never")
     if output is not None:
-        write_whole(output, reach_plot.plot(description, found, band))
+        write_whole(output, reach_plot.plot(description, found, (low, high)))
         typer.echo(f"drawn in {output}")
     return ExitCode.SUCCESS
-
-
-def _length(option: str, text: str) -> float:
-    """A length with its unit, m."""
-    try:
-        value = in_unit(text, "m")
-    except UnitError as error:
-        raise InputError(f"{option}: {error}") from None
-    if value is None:
-        raise InputError(f"{option} {text!r}; expected a length with its unit, such as 60cm")
-    return value

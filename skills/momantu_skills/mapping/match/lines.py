@@ -93,6 +93,50 @@ def _nearest(
 
 
 @numba.njit(cache=True)
+def _pulled(
+    index: NDArray[np.int32],
+    points: Array,
+    normals: Array,
+    corner: Array,
+    cell: float,
+    scan: Array,
+    scan_normals: Array,
+    pose: Array,
+    gate: float,
+    information: Array,
+    pull: Array,
+) -> tuple[float, int]:
+    """Sum one round's equations into `information` (3, 3) and `pull` (3,), for variances of 1.
+
+    Returns the weighted sum of the squared distances, m^2, and how many points have a line.
+    """
+    information[:] = 0.0
+    pull[:] = 0.0
+    squares, count = 0.0, 0
+    at, normal, slope = np.empty(2), np.empty(2), np.empty(3)
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    for i in range(scan.shape[0]):
+        dx, dy = c * scan[i, 0] - s * scan[i, 1], s * scan[i, 0] + c * scan[i, 1]
+        at[0], at[1] = pose[0] + dx, pose[1] + dy
+        normal[0] = c * scan_normals[i, 0] - s * scan_normals[i, 1]
+        normal[1] = s * scan_normals[i, 0] + c * scan_normals[i, 1]
+        j = _nearest(index, points, normals, corner, cell, at, normal, gate)
+        if j < 0:
+            continue
+        nx, ny = normals[j, 0], normals[j, 1]
+        off = (at[0] - points[j, 0]) * nx + (at[1] - points[j, 1]) * ny
+        slope[0], slope[1], slope[2] = nx, ny, dx * ny - dy * nx
+        weight = 1.0 / (1.0 + (off / ROBUST) ** 2)
+        for a in range(3):
+            pull[a] -= weight * slope[a] * off
+            for b in range(3):
+                information[a, b] += weight * slope[a] * slope[b]
+        squares += weight * off * off
+        count += 1
+    return squares, count
+
+
+@numba.njit(cache=True)
 def lay_on(
     index: NDArray[np.int32],
     points: Array,
@@ -118,37 +162,28 @@ def lay_on(
     """
     pose = start.copy()
     information = np.zeros((3, 3))
+    pull = np.zeros(3)
     weight_of_one = 1.0 / (NOISE**2 * ALIKE * doubt)
     prior = np.array([deviation[0] ** -2.0, deviation[0] ** -2.0, deviation[1] ** -2.0])
     misfit, count = 1.0, 0
-    at, normal, slope = np.empty(2), np.empty(2), np.empty(3)
     for turn in range(ROUNDS):
-        information[:] = 0.0
-        pull = np.zeros(3)
-        misfit, count = 0.0, 0
-        c, s = math.cos(pose[2]), math.sin(pose[2])
         within = gate * max(1.0, 3.0 - 0.5 * turn)
-        for i in range(scan.shape[0]):
-            dx, dy = c * scan[i, 0] - s * scan[i, 1], s * scan[i, 0] + c * scan[i, 1]
-            at[0], at[1] = pose[0] + dx, pose[1] + dy
-            normal[0] = c * scan_normals[i, 0] - s * scan_normals[i, 1]
-            normal[1] = s * scan_normals[i, 0] + c * scan_normals[i, 1]
-            j = _nearest(index, points, normals, corner, cell, at, normal, within)
-            if j < 0:
-                continue
-            nx, ny = normals[j, 0], normals[j, 1]
-            off = (at[0] - points[j, 0]) * nx + (at[1] - points[j, 1]) * ny
-            slope[0], slope[1], slope[2] = nx, ny, dx * ny - dy * nx
-            weight = 1.0 / (1.0 + (off / ROBUST) ** 2)
-            for a in range(3):
-                pull[a] -= weight * slope[a] * off
-                for b in range(3):
-                    information[a, b] += weight * slope[a] * slope[b]
-            misfit += weight * off * off
-            count += 1
+        squares, count = _pulled(
+            index,
+            points,
+            normals,
+            corner,
+            cell,
+            scan,
+            scan_normals,
+            pose,
+            within,
+            information,
+            pull,
+        )
         if count < FEWEST:
             return pose, np.zeros((3, 3)), 1.0, count
-        misfit = math.sqrt(misfit / count)
+        misfit = math.sqrt(squares / count)
         information *= weight_of_one
         pull *= weight_of_one
         system = information.copy()
