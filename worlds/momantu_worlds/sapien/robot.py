@@ -20,7 +20,7 @@ from momantu_bt.robot import (
 from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.drives.base import BaseDrive
-from momantu_worlds.sapien.drives.fingers import Tips
+from momantu_worlds.sapien.drives.fingers import Hanging, Tips
 from momantu_worlds.sapien.drives.gripper import GripperDrive
 from momantu_worlds.sapien.drives.joints import JointDrive
 from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry, prismatic_joints
@@ -244,7 +244,8 @@ class SimulatedRobot:
         limits = self._description.joint_limits
         tips = Tips(simulation.linkages, model.fingers, model.joints, model.gains, model.index)
         speeds = {name: limits[name].velocity for name in effector.opening}
-        return GripperDrive(model.fingers, tips, effector, speeds)
+        hanging = Hanging(effector, model.fingers, model.index)
+        return GripperDrive(model.fingers, tips, hanging, effector, speeds)
 
     def _place(self, start: Pose2D, pose: Mapping[str, float]) -> None:
         """Stand at `start` with the joints at `pose` and any gripper open, at rest."""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.config import Physics
-from momantu_worlds.sapien.drives.fingers import Finger, Tips, fingers_of, torques
+from momantu_worlds.sapien.drives.fingers import Finger, Hanging, Tips, fingers_of, torques
 from momantu_worlds.sapien.drives.gains import Gains, arm_gains, with_own
 
 from momantu_bt.robot import JointGains, Linkage, RobotDescription
@@ -63,6 +63,32 @@ def test_each_side_presses_with_the_whole_force_however_many_fingers_it_has() ->
         assert torque / three[name].lever == pytest.approx(25.0 / 1.5)
     name, finger = next(iter(pair.items()))
     assert torques({name: finger}, 40.0) == {name: 40.0}
+
+
+def hanging_tip() -> dict[str, Finger]:
+    """One knuckle with a tip that turns against it."""
+    gains = Gains(4.0, 0.2, 50.0, 0.0)
+    return {
+        "knuckle": Finger(FakeJoint(), gains, 0.1, -1.0, 0.5, 0.0),
+        "tip": Finger(FakeJoint(), gains, 0.1, 1.0, 0.5, 0.0, knuckle="knuckle"),
+    }
+
+
+def test_what_hangs_on_a_finger_has_no_share_of_its_force() -> None:
+    other = {"across": Finger(FakeJoint(), Gains(4.0, 0.2, 0.0, 0.0), 0.1, 1.0, 0.5, 0.0)}
+    found = torques({**hanging_tip(), **other}, 40.0)
+    assert found == {"knuckle": pytest.approx(4.0), "across": pytest.approx(4.0)}
+
+
+def test_what_hangs_on_a_finger_turns_with_it() -> None:
+    rows = {"knuckle": ((0.0, 0.0), (0.1, 0.5)), "tip": ((0.0, 0.0), (0.1, -0.5))}
+    effector = fetch().hand.model_copy(update={"opening": rows})
+    both = hanging_tip()
+    hanging = Hanging(effector, both, {"knuckle": 1, "tip": 2})
+    assert both["tip"].joint.force == 50.0
+    for position in (0.5, 0.31, 0.0):
+        hanging.follow(np.array([9.0, position, 9.0]))
+        assert both["tip"].joint.target == pytest.approx(-position)
 
 
 def test_a_gripper_that_cannot_close_is_refused_with_the_reason() -> None:

@@ -1,4 +1,4 @@
-"""A gripper's fingers in physics: their levers, their coupling, and tips without motors."""
+"""A gripper's fingers in physics: their levers, their coupling, and what hangs on them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.robot import Linkage, RobotDescription, SimulationModel
+from momantu_bt.robot import EndEffector, Linkage, RobotDescription, SimulationModel
 from momantu_bt.world import WorldError
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.gains import Gains, with_own
@@ -25,9 +25,11 @@ LEAST_LEVER = 1e-3
 class Finger:
     """A finger joint.
 
-    lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides.
+    lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides;
+    that of its knuckle for a joint that hangs on one.
     closing: sign of its motion when the gripper closes. span: its travel from open to closed.
-    closed: its position when the gripper is closed, rad or m.
+    closed: its position when the gripper is closed, rad or m. knuckle: the finger joint on which
+    this one hangs; None of a joint that has a motor's force of its own.
     """
 
     joint: Any
@@ -36,6 +38,7 @@ class Finger:
     closing: float
     span: float
     closed: float
+    knuckle: str | None = None
 
 
 def fingers_of(
@@ -53,27 +56,45 @@ def fingers_of(
     """
     if description.end_effector is None:
         return {}
-    effector, found = description.hand, {}
+    effector, found = description.hand, dict[str, Finger]()
     if not effector.opening:
         raise WorldError(
             f"the gripper {effector.actuator!r} of {description.name} has no joints; a simulated "
             "gripper needs at least one finger"
         )
     for name, rows in effector.opening.items():
-        lever = _lever(description, name)
+        knuckle = _knuckle(description, name)
+        lever = _lever(description, name if knuckle is None else knuckle)
         if lever < LEAST_LEVER:
             raise WorldError(
                 f"the finger joint {name!r} of {description.name} does not move its finger along y "
                 f"of {effector.frame!r}, the direction in which the gripper closes; turn that frame"
             )
-        usual = Gains(
-            physics.finger_stiffness * lever**2, physics.finger_damping * lever**2, 0.0, 0.0
-        )
-        gains = with_own(simulation.drives.get(name), usual)
+        gains = with_own(simulation.drives.get(name), _usual(lever, knuckle, physics))
         way = rows[0][1] - rows[-1][1]
         sign = math.copysign(1.0, way)
-        found[name] = Finger(joints[name], gains, lever, sign, abs(way), rows[0][1])
+        found[name] = Finger(joints[name], gains, lever, sign, abs(way), rows[0][1], knuckle)
     return found
+
+
+def _usual(lever: float, knuckle: str | None, physics: Physics) -> Gains:
+    """Gains at the pads as those of a joint; a joint that hangs on another is held stiffly."""
+    if knuckle is None:
+        stiffness, damping, force = physics.finger_stiffness, physics.finger_damping, 0.0
+    else:
+        stiffness, damping, force = physics.tendon_stiffness, physics.tendon_damping, math.inf
+    return Gains(stiffness * lever**2, damping * lever**2, force, 0.0)
+
+
+def _knuckle(description: RobotDescription, joint: str) -> str | None:
+    """The finger joint nearest to a finger joint on the way to the palm; None if there is none."""
+    above = {each.child: each for each in description.kinematics().joints()}
+    one = next(each for each in above.values() if each.name == joint)
+    while (carrying := above.get(one.parent)) is not None:
+        if carrying.name in description.hand.opening:
+            return carrying.name
+        one = carrying
+    return None
 
 
 def _lever(description: RobotDescription, joint: str) -> float:
@@ -93,21 +114,21 @@ def _lever(description: RobotDescription, joint: str) -> float:
 
 
 def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -> None:
-    """Make all fingers of one hand move together, each by the same share of its travel.
+    """Make the fingers of one hand move together, each by the same share of its travel.
 
-    This stands for motors that follow one command and that a held object cannot push back.
+    This stands for motors that follow one command and that a held object cannot push back. Joints
+    that hang on fingers follow them in `Hanging`.
     """
-    if not fingers:
+    leading = [finger for finger in fingers.values() if finger.knuckle is None]
+    if not leading:
         return
-    first, *others = fingers.values()
+    first, *others = leading
     for other in others:
-        links = [first.joint.parent_link, first.joint.child_link, other.joint.child_link]
-        if other.joint.parent_link is not links[0]:
-            _level(articulation, other, fingers, physics)
+        if other.joint.parent_link is not first.joint.parent_link:
             continue
         share = -first.closing * other.closing * first.span / other.span
         articulation.create_fixed_tendon(
-            links,
+            [first.joint.parent_link, first.joint.child_link, other.joint.child_link],
             [0, 1, share],
             [0, 1, 1 / share],
             rest_length=0,
@@ -117,32 +138,41 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
         )
 
 
-def _level(articulation: Any, tip: Finger, fingers: Mapping[str, Finger], physics: Physics) -> None:
-    """Make a tip that hangs on another finger turn with it, as the bars of a parallel jaw do."""
-    link = tip.joint.parent_link
-    knuckle = next((each for each in fingers.values() if each.joint.child_link is link), None)
-    if knuckle is None:
-        return
-    ratio = tip.closing * tip.span / (knuckle.closing * knuckle.span)
-    articulation.create_fixed_tendon(
-        [knuckle.joint.parent_link, link, tip.joint.child_link],
-        [0, -ratio, 1],
-        [0, -1 / ratio, 1],
-        rest_length=tip.closed - ratio * knuckle.closed,
-        offset=0,
-        stiffness=physics.tendon_stiffness * knuckle.lever**2,
-        damping=physics.tendon_damping * knuckle.lever**2,
-    )
+class Hanging:
+    """Finger joints that hang on others and turn with them, as the bars of a parallel jaw do.
+
+    Each is driven to where its knuckle is, stiffly: the bars hold it, whatever presses on it.
+    """
+
+    def __init__(
+        self, effector: EndEffector, fingers: Mapping[str, Finger], index: Mapping[str, int]
+    ) -> None:
+        """index: of each joint in qpos."""
+        self._driven = []
+        for name, finger in fingers.items():
+            if finger.knuckle is not None:
+                finger.gains.give(finger.joint)
+                rows = [np.array(effector.opening[n])[:, 1] for n in (finger.knuckle, name)]
+                order = np.argsort(rows[0])
+                self._driven.append(
+                    (finger.joint, index[finger.knuckle], rows[0][order], rows[1][order])
+                )
+
+    def follow(self, positions: Array) -> None:
+        """Send each to where it belongs beside its knuckle; positions: of all joints now (dof,)."""
+        for joint, place, knuckle, own in self._driven:
+            joint.set_drive_target(float(np.interp(positions[place], knuckle, own)))
 
 
 def torques(fingers: Mapping[str, Finger], force: float) -> dict[str, float]:
-    """Torque of each finger joint at which each side presses with `force`, N; Nm or N."""
-    return {name: force * finger.lever / sides(fingers) for name, finger in fingers.items()}
+    """Torque of each leading finger joint at which each side presses with `force`, N; Nm or N."""
+    number = sides(fingers)
+    return {n: force * f.lever / number for n, f in fingers.items() if f.knuckle is None}
 
 
 def sides(fingers: Mapping[str, Finger]) -> float:
-    """Fingers on each side; a single finger presses against a fixed part."""
-    return max(1.0, len(fingers) / 2)
+    """Leading fingers on each side; a single one presses against a fixed part."""
+    return max(1.0, sum(finger.knuckle is None for finger in fingers.values()) / 2)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.messages import GripperCommand
 from momantu_bt.robot import EndEffector
 from momantu_worlds.sapien.config import STEP
-from momantu_worlds.sapien.drives.fingers import Finger, Tips, sides, torques
+from momantu_worlds.sapien.drives.fingers import Finger, Hanging, Tips, sides, torques
 
 
 class GripperDrive:
@@ -23,10 +23,12 @@ class GripperDrive:
         self,
         fingers: Mapping[str, Finger],
         tips: Tips,
+        hanging: Hanging,
         effector: EndEffector,
         speeds: Mapping[str, float],
     ) -> None:
-        self._fingers, self._tips = fingers, tips
+        self._tips, self._hanging = tips, hanging
+        self._fingers = {name: each for name, each in fingers.items() if each.knuckle is None}
         self._effector = effector
         self._speed = _closing_speed(effector, speeds)
         self._goal = self._target = effector.max_width
@@ -63,6 +65,7 @@ class GripperDrive:
             self._target += min(max(self._goal - self._target, -step), step)
             self._send()
         self._tips.follow(self._targets, positions)
+        self._hanging.follow(positions)
 
     def effort(self, positions: Mapping[str, float]) -> float:
         """Closing force of each side at these finger positions, N: positive presses inwards."""
@@ -74,8 +77,8 @@ class GripperDrive:
 
     def _send(self) -> None:
         self._targets = self._effector.positions(self._target)
-        for name, position in self._targets.items():
-            self._fingers[name].joint.set_drive_target(position)
+        for name, finger in self._fingers.items():
+            finger.joint.set_drive_target(self._targets[name])
 
     def _set_force(self, force: float) -> None:
         self._force = force
