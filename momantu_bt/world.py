@@ -167,6 +167,7 @@ class Verdict:
     success: every demand is met; None: nothing is demanded. unmet: one sentence for each criterion
     that is not met.
     measures: the measured numbers (tilt in rad, distances in m, forces in N).
+    causes: of measures of the whole run, by the same names, which bodies they belong to.
     incidents: everything dangerous that happened, ordered by time, demanded or not.
     demands: each of them, if the world tells.
     """
@@ -176,6 +177,7 @@ class Verdict:
     measures: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     incidents: tuple[Incident, ...] = ()
     demands: tuple[Demanded, ...] = ()
+    causes: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,7 +89,7 @@ class Report:
     """How a run ended.
 
     status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's verdict;
-    None without a referee or a goal. unmet, measures, demands: from the verdict. failure: why the
+    None without a referee or a goal. unmet, measures, causes, demands: from the verdict. failure: why the
     tree failed, with the causes.
     sim_time_s: the world's clock at the tree's end. wall_time_s: from the first tick to the last.
     start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
@@ -120,6 +120,7 @@ class Report:
     error: str | None = None
     incidents: tuple[Incident, ...] = ()
     demands: tuple[Demanded, ...] = ()
+    causes: Mapping[str, str] = field(default_factory=dict)
     claims: Mapping[str, SkillClaims] | None = None
     faults: tuple[FaultReport, ...] = ()
     interrupted_by: str | None = None
@@ -166,6 +167,7 @@ class Report:
             "error": self.error,
             "incidents": [finite(plain(incident)) for incident in self.incidents],
             "demands": [plain(demand) for demand in self.demands],
+            "causes": dict(self.causes),
             "claims": None if self.claims is None else plain(self.claims),
             "faults": [plain(fault) for fault in self.faults],
             "interrupted_by": self.interrupted_by,

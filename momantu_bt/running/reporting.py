@@ -43,6 +43,7 @@ def report_of(
         error=ending.error,
         incidents=() if verdict is None else verdict.incidents,
         demands=() if verdict is None else verdict.demands,
+        causes={} if verdict is None else verdict.causes,
         faults=faults,
         interrupted_by=ending.interrupted_by,
     )

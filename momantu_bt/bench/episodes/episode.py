@@ -30,7 +30,7 @@ from momantu_bt.tree.registry import Registry
 _KEPT = (
     *("world", "robot", "status", "success", "failure", "unmet", "measures", "sim_time_s"),
     *("wall_time_s", "start_time_s", "fingerprint", "error", "incidents", "claims", "faults"),
-    "demands",
+    *("demands", "causes"),
 )
 """Fields that a row copies unchanged from a report."""
 

@@ -85,9 +85,10 @@ def _figures(summary: Summary) -> Iterator[str]:
         yield f"  simulated seconds per second of wall time: median {summary.speed.median:.1f}"
     yield f"  retries: {summary.tries}, in {summary.retried} of {summary.episodes} episodes"
     if summary.strongest is not None:
+        bodies = f", {summary.pushed}" if summary.pushed else ""
         yield (
             f"  force of contacts: 95th percentile {summary.force.p95:.0f} N, "
-            f"largest {summary.force.largest:.0f} N (seed {summary.strongest})"
+            f"largest {summary.force.largest:.0f} N (seed {summary.strongest}{bodies})"
         )
     if summary.episodes:
         yield f"  memory of a process: {_memory(summary.memory_mb)}"

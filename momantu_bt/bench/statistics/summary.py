@@ -40,7 +40,8 @@ class Summary:
 
     interval: Wilson's, of the success rate. sim_time_s: of successes. speed: simulated seconds per
     second of wall time. force: of each episode, the largest force with which the robot pushed
-    anything but what it brings, N; strongest: the seed of the largest. tries: retries of nodes over
+    anything but what it brings, N; strongest: the seed of the largest, and
+    pushed: its link and body. tries: retries of nodes over
     all episodes. retried: number of episodes with a retry. claims: the auditor's counts per skill.
     ended: how the processes ended.
     """
@@ -53,6 +54,7 @@ class Summary:
     memory_mb: Spread
     force: Spread
     strongest: int | None
+    pushed: str
     tries: int
     retried: int
     blame: tuple[tuple[Blame, list[int]], ...]
@@ -67,7 +69,8 @@ class Summary:
         good = [row for row in rows if succeeded(row)]
         told = [row for row in rows if row["ended"] == REPORT]
         tries = [row["tries"] for row in told]
-        pushes = [(force, row["seed"]) for row in told if (force := _force(row)) is not None]
+        pushes = [(force, row) for row in told if (force := _force(row)) is not None]
+        strongest = max(pushes, key=lambda push: (push[0], push[1]["seed"]), default=(0.0, None))[1]
         return cls(
             episodes=len(rows),
             successes=len(good),
@@ -76,7 +79,8 @@ class Summary:
             speed=Spread.of([_speed(row) for row in told if row["wall_time_s"] > 0.0]),
             memory_mb=Spread.of([row["memory_mb"] for row in rows if row["memory_mb"] is not None]),
             force=Spread.of([force for force, _ in pushes]),
-            strongest=max(pushes, default=(0.0, None))[1],
+            strongest=None if strongest is None else strongest["seed"],
+            pushed="" if strongest is None else (strongest.get("causes") or {}).get("force", ""),
             tries=sum(tries),
             retried=sum(count > 0 for count in tries),
             blame=tuple(blame_table(rows)),
@@ -94,7 +98,7 @@ class Summary:
             "sim_time_s": self.sim_time_s.as_dict(),
             "speed": self.speed.as_dict(),
             "memory_mb": self.memory_mb.as_dict(),
-            "force": {**self.force.as_dict(), "seed": self.strongest},
+            "force": {**self.force.as_dict(), "seed": self.strongest, "bodies": self.pushed},
             "tries": self.tries,
             "retried": self.retried,
             "blame": [

@@ -115,6 +115,16 @@ def test_the_largest_force_is_told_with_its_seed() -> None:
     assert Summary.of([row(1)]).strongest is None
 
 
+def test_the_bodies_of_the_largest_force_are_told() -> None:
+    rows = [
+        row(seed, measures={"force": 10.0 * seed}, causes={"force": f"elbow on wall_{seed}"})
+        for seed in (3, 9, 4)
+    ]
+    told = Summary.of(rows)
+    assert "largest 90 N (seed 9, elbow on wall_9)" in summary_text("t.yaml", told)
+    assert told.as_dict()["force"]["bodies"] == "elbow on wall_9"
+
+
 def test_incidents_are_counted_by_kind_with_their_seeds() -> None:
     push = {"time": 1.0, "kind": "force", "sentence": "…", "value": 160.0}
     drop = {"time": 2.0, "kind": "dropped", "sentence": "…", "value": 0.3}

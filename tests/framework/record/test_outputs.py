@@ -44,6 +44,7 @@ FIELDS = {
     "error": str,
     "incidents": list,
     "demands": list,
+    "causes": dict,
     "claims": dict,
     "faults": list,
     "interrupted_by": str,

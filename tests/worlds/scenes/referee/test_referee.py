@@ -195,6 +195,17 @@ def test_squeezing_the_item_hard_is_no_bump():
     assert referee.verdict().measures["force"] == 0.0
 
 
+def test_the_largest_force_has_its_bodies_whatever_it_is():
+    truth = good_truth()
+    referee = Referee(episode(), truth, HAND)
+    for force, link in ((20.0, "base_link"), (35.0, "gripper_link"), (5.0, "base_link")):
+        truth.touches = [Touch(link, "table_b", force)]
+        referee.observe(TICK)
+    verdict = referee.verdict()
+    assert verdict.measures["force"] == 35.0
+    assert verdict.causes == {"force": "gripper_link on table_b"}
+
+
 def test_still_counts_from_the_last_move():
     truth = good_truth()
     referee = watch(truth, 1.0)

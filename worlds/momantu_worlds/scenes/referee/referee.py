@@ -100,11 +100,20 @@ class Referee:
         told["others_shift"] = self._shift.value
         told["others_tilt"] = self._tilt.value
         told["force"] = self._bump.value
+        peaks = {"others_shift": self._shift, "others_tilt": self._tilt, "force": self._bump}
+        causes = {name: peak.what for name, peak in peaks.items() if peak.what}
         sentences = [sentence for demand in demands for sentence in demand.unmet]
         sentences += self._of_the_whole_run([demand.goal for demand in self._demands])
         success = not sentences if demands else None
         incidents = self._incidents.until(self._now)
-        return Verdict(success, tuple(sentences), MappingProxyType(told), incidents, tuple(demands))
+        return Verdict(
+            success,
+            tuple(sentences),
+            MappingProxyType(told),
+            incidents,
+            tuple(demands),
+            MappingProxyType(causes),
+        )
 
     def _look_at_contacts(self, contacts: Iterable[TouchingForce]) -> dict[str, set[str]]:
         """Record bumps; return what each item touches."""
