@@ -89,8 +89,8 @@ class Report:
     """How a run ended.
 
     status: SUCCESS or FAILURE of the tree, INTERRUPTED, or ERROR. success: the referee's verdict;
-    None without a referee or a goal. unmet, measures, causes, demands: from the verdict. failure: why the
-    tree failed, with the causes.
+    None without a referee or a goal. unmet, measures, causes, demands: from the verdict. failure:
+    why the tree failed, with the causes.
     sim_time_s: the world's clock at the tree's end. wall_time_s: from the first tick to the last.
     start_time_s: wall time before the first tick. ticks: number of ticks of the tree. blackboard:
     the root's values at the end. error: traceback of an internal error. incidents: dangerous events
