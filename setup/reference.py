@@ -30,6 +30,7 @@ PUBLIC = (
     "momantu_bt.goal",
     "momantu_bt.frames",
     "momantu_bt.geometry",
+    "momantu_bt.labelled",
     "momantu_bt.lazy",
     "momantu_bt.marker",
     "momantu_bt.messages",

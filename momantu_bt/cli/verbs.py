@@ -62,6 +62,10 @@ VERBS = {
         "momantu_bt.cli.calibrate",
         "Estimate a camera's lens or mounting, or a whole robot, from recorded data.",
     ),
+    "perception": Verb(
+        "momantu_bt.cli.perception",
+        "Render labelled pictures, and measure detectors on them.",
+    ),
     "faults": Verb(
         "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."
     ),

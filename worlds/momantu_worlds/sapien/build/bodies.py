@@ -66,7 +66,7 @@ def _place(scene: Any, body: Body, truth: Truth, visuals: bool) -> Any:
     entity = sapien.Entity()
     entity.name = body.name
     if visuals and any(part.visual for part in body.parts):
-        entity.add_component(_look(body))
+        entity.add_component(look_of(body))
     entity.add_component(_physics(body))
     entity.set_pose(pose_of(body.map_from_body))
     scene.add_entity(entity)
@@ -97,7 +97,8 @@ def _add_floor(scene: Any) -> None:
     scene.add_entity(entity)
 
 
-def _look(body: Body) -> Any:
+def look_of(body: Body) -> Any:
+    """The component with all visual parts of a body, around the body's origin."""
     look = sapien.render.RenderBodyComponent()
     for part in body.parts:
         if part.visual:

@@ -90,6 +90,12 @@ class Camera:
         """Depth (h, w) of the last picture without errors, m; 0 where there is no surface."""
         return np.asarray(-self._camera.get_picture("Position")[..., 2], dtype=np.float32)
 
+    def bodies(self) -> NDArray[np.int32]:
+        """`per_scene_id` of the entity at each pixel (h, w) of the last picture; 0 without one."""
+        position = self._camera.get_picture("Position")
+        seen = position[..., 2] < 0.0
+        return np.where(seen, np.rint(position[..., 0]), 0).astype(np.int32)
+
 
 class Noise(NamedTuple):
     """Random numbers of one picture.

@@ -101,6 +101,7 @@ void main() {
   vec3 radiance = albedo * light + materialBuffer.emission.rgb;
   vec3 shade = clamp(radiance, 0.0, 1.0);
   outColor = vec4(pow(shade, vec3(1.0 / 2.2)), 1.0);
-  outPosition = inPosition;
+  // x follows from the depth, so its place tells which entity is seen; alpha must stay 1: blending
+  outPosition = vec4(float(objectDataBuffer.segmentation.y), inPosition.yzw);
   outRadiance = vec4(radiance, 1.0);
 }

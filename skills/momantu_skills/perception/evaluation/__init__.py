@@ -1,0 +1,1 @@
+"""How well detectors find things in labelled pictures."""

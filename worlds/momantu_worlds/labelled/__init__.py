@@ -1,0 +1,1 @@
+"""Labelled pictures of heaps of things, made for training and measuring detectors."""
