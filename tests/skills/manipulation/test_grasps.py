@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.hand.grasps import OPENING, TIGHT, Grasp, grasps_for
 from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_worlds.robots import fetch, kinova_jackal
@@ -108,6 +108,16 @@ def test_the_deeper_a_box_reaches_beyond_the_pads_the_less_it_is_liked() -> None
 def test_what_is_wider_than_the_gripper_has_grasps_by_its_rim_alone() -> None:
     assert all(grasp.rim for grasp in grasps("cylinder", (0.12, 0.12, 0.1)))
     assert all(grasp.rim for grasp in grasps("box", (0.12, 0.12, 0.1)))
+
+
+@pytest.mark.parametrize("width", [0.06, 0.088, 0.091, 0.095])
+def test_a_hand_that_is_hardly_wider_than_the_object_is_enough_where_it_must_be(
+    width: float,
+) -> None:
+    one = thing("cylinder", (width, width, 0.1))
+    held = [g for g in grasps_for(one, HAND, PALM, opening=TIGHT) if not g.rim]
+    assert bool(held) is (width <= HAND.max_width - TIGHT)
+    assert TIGHT < OPENING
 
 
 def test_every_grasp_has_its_twin_turned_by_half_a_turn() -> None:

@@ -76,6 +76,24 @@ def test_a_base_below_another_link_is_put_on_the_floor(
     assert base.position == pytest.approx((0, 0, 0), abs=1e-6)
 
 
+def test_a_base_above_the_floor_is_put_on_it_whatever_its_links_are_called(
+    rolling_urdf: Path, tmp_path: Path
+) -> None:
+    text = rolling_urdf.read_text().replace('"0 0.2 0.1"', '"0 0.2 0"')
+    text = text.replace('"0 -0.2 0.1"', '"0 -0.2 0"')
+    floor = '<joint name="below" type="fixed"><parent link="base_link"/>'
+    floor += '<child link="base_footprint"/><origin xyz="0 0 -0.1"/></joint>'
+    own = f'<link name="base_footprint"/>{floor}</robot>'
+    (tmp_path / "high.urdf").write_text(text.replace("</robot>", own))
+    code, said = run(tmp_path / "high.urdf", "-o", tmp_path, "--samples", 20)
+    assert code == 0, said
+    robot = read_robot(tmp_path)
+    assert robot.base_frame == "base_on_floor"
+    for name, height in (("base_footprint", 0.0), ("base_link", 0.1)):
+        place = robot.kinematics().base_from_frame(name, {})
+        assert place.position == pytest.approx((0, 0, height), abs=3e-3)
+
+
 def test_the_verb_writes_and_says_what_it_found(rolling_urdf: Path, tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     code, said = run(rolling_urdf, "-o", folder, "--samples", 50)

@@ -90,3 +90,22 @@ def test_a_joint_without_a_range_turns_half_a_turn_each_way() -> None:
 def test_what_is_no_tree_is_refused(elements: tuple[str, ...], words: str) -> None:
     with pytest.raises(SetupError, match=words):
         skeleton(*elements)
+
+
+def test_two_joints_of_one_name_are_told() -> None:
+    with pytest.raises(SetupError, match=r"two joints are called 'ab', one to 'b' and one to 'c'"):
+        skeleton(link("a"), link("b"), link("c"), joint("ab", "a", "b"), joint("ab", "a", "c"))
+
+
+def test_a_joint_that_follows_another_one_has_room_for_what_that_asks() -> None:
+    other_way = '<mimic joint="ab" multiplier="-1"/>'
+    ranges = {"limit": 'lower="0" upper="0.8" velocity="1" effort="1"'}
+    found = skeleton(
+        link("a"),
+        link("b"),
+        link("c"),
+        joint("ab", "a", "b", **ranges),
+        joint("bc", "b", "c", **ranges, extra=other_way),
+    )
+    assert found.joints["ab"].range == (0.0, 0.8)
+    assert found.joints["bc"].range == (-0.8, 0.8)

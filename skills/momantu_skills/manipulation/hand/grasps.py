@@ -37,6 +37,8 @@ BEYOND_PENALTY = 20.0
 """Cost, s per metre of the axis beyond the pads' middle: an object held there may swing."""
 OPENING = 0.014
 """How much wider than the object the open gripper must be, m."""
+TIGHT = 2 * ROOM
+"""The same where no other grasp is left, m: the detection error on both sides."""
 TOP_PENALTY = 3.0
 """Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
@@ -82,16 +84,21 @@ class Grasp:
 
 
 def grasps_for(
-    thing: DetectedObject, hand: EndEffector, palm: Array, fingers: Sequence[Array] = ()
+    thing: DetectedObject,
+    hand: EndEffector,
+    palm: Array,
+    fingers: Sequence[Array] = (),
+    opening: float = OPENING,
 ) -> list[Grasp]:
     """All useful grasps, in a fixed order; those over its rim if the object is too wide for others.
 
     palm: corners (n, 3) of the hand's body in the grasp frame, m. fingers: planes (k, 4) around
     each open finger in the same frame, outward normal and offset. If the clearance near the
-    knuckles is less than between the pads, the fingers hold the object farther out.
+    knuckles is less than between the pads, the fingers hold the object farther out. opening: how
+    much wider than the object the open gripper must be, m.
     """
     found: list[Grasp] = []
-    fitting = [a for a in _approaches(thing) if a[0] <= hand.max_width - OPENING]
+    fitting = [a for a in _approaches(thing) if a[0] <= hand.max_width - opening]
     for width, direction, top in fitting:
         if top:
             found += _from_above(thing, hand, fingers, direction, width)

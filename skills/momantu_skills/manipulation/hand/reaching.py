@@ -14,7 +14,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.hand.grasps import TIGHT, Grasp, grasps_for
 from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
@@ -106,22 +106,7 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     Raises:
         Failure: NO_GRASP, with the number of grasps that failed at each step.
     """
-    effector = arm.scene.model.description.hand
-    model = arm.scene.model
-    grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
-    wide = bool(grasps) and grasps[0].rim
-    if wide:
-        space, seen = arm.scene.seen_space, arm.scene.points
-        grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
-        grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
-    if not grasps:
-        rim = ", and no picture shows room for a finger behind its rim" if wide else ""
-        raise Failure(
-            "NO_GRASP",
-            f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
-            f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
-            f"{effector.max_width * 1000:.0f} mm{rim}",
-        )
+    grasps = _fitting(arm, thing)
     postures = list(_postures(arm, thing, grasps))[:TESTED]
     for filled in (False, True):
         check = _Check(arm, thing, lift, Cut(thing.pose.transform, _cut(thing), filled))
@@ -132,6 +117,35 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
         "NO_GRASP",
         f"none of {len(grasps)} grasps can be approached, held and lifted: {check.summary()}",
         **check.lost,
+    )
+
+
+def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
+    """The grasps that the hand is wide enough for; over a rim, those that pictures show room for.
+
+    Where there are none, those for which the open hand is hardly wider than the object.
+
+    Raises:
+        Failure: NO_GRASP if there are none of these either.
+    """
+    effector, model = arm.scene.model.description.hand, arm.scene.model
+    grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
+    wide = bool(grasps) and grasps[0].rim
+    if wide:
+        space, seen = arm.scene.seen_space, arm.scene.points
+        grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
+        grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
+    if not grasps:
+        tight = grasps_for(thing, effector, model.palm, model.open_fingers, TIGHT)
+        grasps = [grasp for grasp in tight if not grasp.rim]
+    if grasps:
+        return grasps
+    rim = ", and no picture shows room for a finger behind its rim" if wide else ""
+    raise Failure(
+        "NO_GRASP",
+        f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
+        f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
+        f"{effector.max_width * 1000:.0f} mm{rim}",
     )
 
 

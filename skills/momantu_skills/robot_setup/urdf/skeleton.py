@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.urdf import Joint, Link, Mimic, Urdf, UrdfError
@@ -60,9 +60,9 @@ class Skeleton:
     """Links and joints of a URDF, from its root outwards."""
 
     def __init__(self, links: Iterable[Link], joints: Iterable[SetupJoint]) -> None:
-        """Raises SetupError: no tree with one root."""
+        """Raises SetupError: two joints of one name, or no tree with one root."""
         self.links = {link.name: link for link in links}
-        self.joints = {joint.name: joint for joint in joints}
+        self.joints = _followed(_by_name(joints))
         self._above = {joint.child: joint for joint in self.joints.values()}
         self._below: dict[str, list[SetupJoint]] = {name: [] for name in self.links}
         for joint in self.joints.values():
@@ -140,6 +140,35 @@ class Skeleton:
         """Every moving joint in what a link carries, in the order of the file."""
         inside = set(self.subtree(link))
         return tuple(j for j in self.joints.values() if j.moving and j.parent in inside)
+
+
+def _by_name(joints: Iterable[SetupJoint]) -> dict[str, SetupJoint]:
+    found: dict[str, SetupJoint] = {}
+    for joint in joints:
+        if joint.name in found:
+            raise SetupError(
+                f"two joints are called {joint.name!r}, one to {found[joint.name].child!r} and one "
+                f"to {joint.child!r}; give one of them another name"
+            )
+        found[joint.name] = joint
+    return found
+
+
+def _followed(joints: dict[str, SetupJoint]) -> dict[str, SetupJoint]:
+    """The same, but a joint that follows another one has room for all that this one asks of it.
+
+    Its own range may be written for the other way round.
+    """
+    return {name: _with_room(joint, joints) for name, joint in joints.items()}
+
+
+def _with_room(joint: SetupJoint, joints: dict[str, SetupJoint]) -> SetupJoint:
+    leader = None if joint.mimic is None else joints.get(joint.mimic.leader)
+    if leader is None or leader.endless or joint.lower is None or joint.upper is None:
+        return joint
+    assert joint.mimic is not None
+    asked = [joint.mimic.multiplier * end + joint.mimic.offset for end in leader.range]
+    return replace(joint, lower=min(joint.lower, *asked), upper=max(joint.upper, *asked))
 
 
 def read_skeleton(urdf: Urdf) -> Skeleton:

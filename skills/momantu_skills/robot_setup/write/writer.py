@@ -29,8 +29,8 @@ PUSH = 3.0
 """Push force of the base per mass, m/s2: rubber wheels push with at most a third of the weight."""
 MOST_UP = 2
 """Most folders that a relative path goes up."""
-FLOOR_LINK = "base_footprint"
-"""Name of the frame that is added on the floor if the URDF has none there."""
+FLOOR_LINKS = ("base_footprint", "base_on_floor", "robot_on_floor")
+"""Names of the frame that is added on the floor: the first that no link of the URDF has."""
 
 
 def robot_file(proposal: Proposal, folder: Path) -> str:
@@ -98,7 +98,12 @@ def _no_reach(reach: Reach) -> str:
 
 def base_frame(proposal: Proposal) -> str:
     """The frame on the floor: the URDF's own, or one that is put below it."""
-    return FLOOR_LINK if _put_on_floor(proposal) else proposal.base.frame
+    return _floor_link(proposal) if _put_on_floor(proposal) else proposal.base.frame
+
+
+def _floor_link(proposal: Proposal) -> str:
+    links = proposal.prepared.skeleton.links
+    return next((name for name in FLOOR_LINKS if name not in links), "")
 
 
 def _put_on_floor(proposal: Proposal) -> bool:
@@ -108,7 +113,7 @@ def _put_on_floor(proposal: Proposal) -> bool:
     """
     skeleton = proposal.prepared.skeleton
     unfit = abs(proposal.stand.floor) > ON_FLOOR or proposal.base.frame != skeleton.root
-    return unfit and not proposal.base.virtual and FLOOR_LINK not in skeleton.links
+    return unfit and not proposal.base.virtual and _floor_link(proposal) != ""
 
 
 def _head(proposal: Proposal) -> Iterator[str]:
@@ -154,7 +159,7 @@ def _parts(proposal: Proposal, folder: Path) -> Iterator[str]:
         yield f"# Measured: {base} lies {height} m above the robot's lowest point; a base frame is"
         yield "# put on the floor below it."
         yield "mounts:"
-        yield f"  {proposal.name}: {{on: {FLOOR_LINK}, xyz: [0, 0, {height}]{link}}}"
+        yield f"  {proposal.name}: {{on: {_floor_link(proposal)}, xyz: [0, 0, {height}]{link}}}"
     elif abs(proposal.stand.floor) > ON_FLOOR:
         yield from comment(
             f"Look at it: the robot's lowest point lies {number(proposal.stand.floor)} m from the "

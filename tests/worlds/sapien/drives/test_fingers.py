@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 from momantu_worlds.robots import fetch, kinova_jackal
 from momantu_worlds.sapien.config import Physics
-from momantu_worlds.sapien.drives.fingers import Finger, Hanging, Tips, fingers_of, torques
+from momantu_worlds.sapien.drives.fingers import (
+    Finger,
+    Hanging,
+    Tips,
+    fingers_of,
+    knuckle_of,
+    torques,
+)
 from momantu_worlds.sapien.drives.gains import Gains, arm_gains, with_own
 
 from momantu_bt.robot import JointGains, Linkage, RobotDescription
@@ -89,6 +96,38 @@ def test_what_hangs_on_a_finger_turns_with_it() -> None:
     for position in (0.5, 0.31, 0.0):
         hanging.follow(np.array([9.0, position, 9.0]))
         assert both["tip"].joint.target == pytest.approx(-position)
+
+
+LINKED = """<robot name="r"><link name="base"/>
+<link name="left"/><link name="pad_arm"/><link name="pad"/><link name="bar"/><link name="right"/>
+<joint name="bar_joint" type="revolute"><parent link="base"/><child link="bar"/>
+  <axis xyz="0 0 1"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+<joint name="left_joint" type="revolute"><parent link="base"/><child link="left"/>
+  <axis xyz="0 0 1"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+<joint name="fixed" type="fixed"><parent link="left"/><child link="pad_arm"/></joint>
+<joint name="tip_joint" type="revolute"><parent link="pad_arm"/><child link="pad"/>
+  <axis xyz="0 0 -1"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+<joint name="right_joint" type="revolute"><parent link="base"/><child link="right"/>
+  <axis xyz="0 0 -1"/><limit lower="0" upper="1" velocity="1" effort="1"/></joint>
+</robot>"""
+
+
+def test_a_bar_follows_the_finger_beside_it_and_a_tip_the_one_below_it(tmp_path: Path) -> None:
+    path = tmp_path / "hand.urdf"
+    path.write_text(LINKED)
+    opening = {
+        f"{name}_joint": ((0.0, 0.5), (0.08, 0.0)) for name in ("bar", "left", "tip", "right")
+    }
+    hand = fetch().hand.model_copy(update={"opening": opening})
+    robot = fetch().model_copy(update={"end_effector": hand, "urdf": path, "base_frame": "base"})
+    found = {name: knuckle_of(robot, ("pad", "right"), name) for name in opening}
+    assert found == {
+        "bar_joint": "left_joint",
+        "left_joint": None,
+        "tip_joint": "left_joint",
+        "right_joint": None,
+    }
+    assert knuckle_of(robot, (), "bar_joint") is None
 
 
 def test_a_gripper_that_cannot_close_is_refused_with_the_reason() -> None:

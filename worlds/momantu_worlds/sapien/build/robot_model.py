@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import Any
@@ -21,6 +21,8 @@ from momantu_worlds.sapien.drives.gains import Gains, arm_gains
 
 MANY_TURNS = 1e3
 """Limit of joints that turn without end, rad, so that positions never wrap."""
+LIMITED = ("revolute_unwrapped", "prismatic")
+"""Types of joints that have a range, as SAPIEN names them."""
 FLOOR_REACH = 1e3
 """Range of the base's virtual sliding joints, m."""
 
@@ -108,13 +110,14 @@ def _parse(
         loader.set_link_material(link, friction, friction, 0.0)
     articulations, _, _ = loader.parse(str(simulation.urdf or description.urdf), srdf_file="")
     builder = articulations[0]
-    own = () if description.end_effector is None else description.hand.opening
+    own = {} if description.end_effector is None else description.hand.opening
     builder.mimic_joint_records = [m for m in builder.mimic_joint_records if m.joint not in own]
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
         if link.name in simulation.no_collision_links:
             link.collision_records.clear()
         _unwrap(link.joint_record, simulation)
+        _give_room(link.joint_record, own)
     for name in simulation.floor_links:
         links[name].collision_groups[2] |= FLOOR_BIT
     _ignore_pairs(links, (*description.ignored_collisions, *simulation.ignored_collisions))
@@ -144,6 +147,18 @@ def _unwrap(joint: Any, simulation: SimulationModel) -> None:
         joint.limits = [[-MANY_TURNS, MANY_TURNS]]
     elif joint.name in (base.x, base.y):
         joint.limits = [[-FLOOR_REACH, FLOOR_REACH]]
+
+
+def _give_room(joint: Any, opening: Mapping[str, Sequence[tuple[float, float]]]) -> None:
+    """Let a finger joint take every position of its opening.
+
+    The range of a joint that follows another one may be written for the other way round.
+    """
+    if joint.name not in opening or joint.joint_type not in LIMITED:
+        return
+    low, high = joint.limits[0]
+    positions = [position for _, position in opening[joint.name]]
+    joint.limits = [[min(low, *positions), max(high, *positions)]]
 
 
 def _ignore_pairs(links: dict[str, Any], pairs: tuple[tuple[str, str], ...]) -> None:

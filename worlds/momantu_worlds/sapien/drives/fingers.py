@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,8 +28,8 @@ class Finger:
     lever: force at the pads along the closing direction is torque / lever; m, or 1 if it slides;
     that of its knuckle for a joint that hangs on one.
     closing: sign of its motion when the gripper closes. span: its travel from open to closed.
-    closed: its position when the gripper is closed, rad or m. knuckle: the finger joint on which
-    this one hangs; None of a joint that has a motor's force of its own.
+    closed: its position when the gripper is closed, rad or m. knuckle: the finger joint that this
+    one follows, as it hangs on it or is a bar beside it; None of a joint with a motor's force.
     """
 
     joint: Any
@@ -63,7 +63,7 @@ def fingers_of(
             "gripper needs at least one finger"
         )
     for name, rows in effector.opening.items():
-        knuckle = _knuckle(description, name)
+        knuckle = knuckle_of(description, simulation.finger_links, name)
         lever = _lever(description, name if knuckle is None else knuckle)
         if lever < LEAST_LEVER:
             raise WorldError(
@@ -86,15 +86,24 @@ def _usual(lever: float, knuckle: str | None, physics: Physics) -> Gains:
     return Gains(stiffness * lever**2, damping * lever**2, force, 0.0)
 
 
-def _knuckle(description: RobotDescription, joint: str) -> str | None:
-    """The finger joint nearest to a finger joint on the way to the palm; None if there is none."""
-    above = {each.child: each for each in description.kinematics().joints()}
-    one = next(each for each in above.values() if each.name == joint)
-    while (carrying := above.get(one.parent)) is not None:
-        if carrying.name in description.hand.opening:
-            return carrying.name
-        one = carrying
-    return None
+def knuckle_of(
+    description: RobotDescription, finger_links: Sequence[str], joint: str
+) -> str | None:
+    """The finger joint that another one follows; None of a joint that closes a finger itself.
+
+    That is the nearest one on the way to the palm; for a bar on the palm that carries no finger,
+    the first that does.
+    """
+    opening, tree = description.hand.opening, description.kinematics()
+    carried = [[j.name for j in tree.chain(link) if j.name in opening] for link in finger_links]
+    leading = [names[0] for names in carried if names]
+    child = next(each.child for each in tree.joints() if each.name == joint)
+    above = [each.name for each in tree.chain(child) if each.name in opening][:-1]
+    if above:
+        return above[-1]
+    if not leading or joint in leading:
+        return None
+    return next(name for name in opening if name in leading)
 
 
 def _lever(description: RobotDescription, joint: str) -> float:
@@ -117,7 +126,7 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
     """Make the fingers of one hand move together, each by the same share of its travel.
 
     This stands for motors that follow one command and that a held object cannot push back. Joints
-    that hang on fingers follow them in `Hanging`.
+    that follow others do so in `Hanging`.
     """
     leading = [finger for finger in fingers.values() if finger.knuckle is None]
     if not leading:
@@ -139,7 +148,7 @@ def couple(articulation: Any, fingers: Mapping[str, Finger], physics: Physics) -
 
 
 class Hanging:
-    """Finger joints that hang on others and turn with them, as the bars of a parallel jaw do.
+    """Finger joints that hang on others or are bars beside them, and turn with them.
 
     Each is driven to where its knuckle is, stiffly: the bars hold it, whatever presses on it.
     """
