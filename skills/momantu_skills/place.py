@@ -14,7 +14,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
-from momantu_bt.skill import In, Needs, Run, Skill
+from momantu_bt.skill import In, Needs, Run, Skill, compute
 from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
@@ -27,10 +27,15 @@ with lazily():
     from momantu_skills.gaze import unseen_ways
     from momantu_skills.manipulation.hand import verification
     from momantu_skills.manipulation.model import hulls
+    from momantu_skills.manipulation.model.collision import Obstacle
 
 
 THINKING = 0.4
 """Time allowed for choosing a spot and planning, s: twice the median."""
+BEHIND = 0.05
+"""How far before a point of the object something must be to hide it, m: more than the noise."""
+HIDDEN = 0.4
+"""Share of the object's corners that the robot hides if it cannot tell that the object is gone."""
 BESIDE = 0.02
 """Largest distance from its spot at which the object counts as placed, m."""
 
@@ -177,7 +182,22 @@ class Place(Skill):
         before: cells (n, 3) in odom that were occupied before; they do not belong to the object.
         """
         pose = plan.odom_from_object
-        yield from self._look(arm, pose.position, [pose.apply(hulls.object_corners(held.object))])
+        corners = pose.apply(hulls.object_corners(held.object))
+        yield from self._look(arm, pose.position, [corners])
+        seen = self._judged(arm, pose, held, before)
+        hidden = arm.scene.seen_space.hidden(corners, BEHIND)
+        if seen == "gone" and hidden.mean() > HIDDEN and self._camera_is_apart(arm):
+            yield from self._clear_the_view(arm, corners)
+            yield from self._look(arm, pose.position, [corners])
+            seen = self._judged(arm, pose, held, before)
+        what, where = held.object.category, np.round(pose.position, 3).tolist()
+        if seen == "toppled":
+            raise Failure("TOPPLED", f"the {what} lies where it was set down", position=where)
+        if seen == "gone":
+            raise Failure("LOST", f"the {what} is not where it was set down", position=where)
+
+    def _judged(self, arm: Arm, pose: Transform, held: HeldObject, before: Array) -> str:
+        """Whether the object is "upright", "toppled" or "gone"; remember where it stands."""
         bottom = float(pose.position[2] - held.object.size[2] / 2)
         seen = verification.standing(arm.scene.points, pose, held.object, bottom)
         found = verification.beside(
@@ -185,8 +205,21 @@ class Place(Skill):
         )
         if found is not None and float(np.linalg.norm(found.position - pose.position)) > BESIDE:
             self._spot, seen = found, "upright"
-        what, where = held.object.category, np.round(pose.position, 3).tolist()
-        if seen == "toppled":
-            raise Failure("TOPPLED", f"the {what} lies where it was set down", position=where)
-        if seen == "gone":
-            raise Failure("LOST", f"the {what} is not where it was set down", position=where)
+        return seen
+
+    def _camera_is_apart(self, arm: Arm) -> bool:
+        return arm.robot.description.resolve_use(CAMERA_CARRIER) != ARM
+
+    def _clear_the_view(self, arm: Arm, corners: Array) -> Run:
+        """Take the arm from between the camera and the object (corners (n, 3) in odom), if it can.
+
+        In the pose `ready` it does not hide what is before the robot.
+        """
+        goal = arm.posed(arm.robot.description.named_poses["ready"])
+        solid = Obstacle("set down", arm.state.odom_from_base.inverse().apply(corners))
+        try:
+            way = yield from compute(lambda: arm.route([goal], None, extra=(solid,)), THINKING)
+        except Failure:
+            return
+        for trajectory in way:
+            yield from arm.follow(trajectory, "clearing the view")

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.hand import verification
 from momantu_skills.manipulation.scene.service import PlanningSceneService
+from momantu_skills.manipulation.scene.surroundings import SeenSpace
 from momantu_skills.place import Place
 
 from momantu_bt.claim import Holding, SetDown
@@ -220,3 +222,25 @@ def test_nothing_held_is_contradicted_by_something_held(
 def test_what_never_got_to_a_spot_claims_nothing(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, ()).claim() is None
+
+
+def test_an_arm_that_hides_the_spot_is_taken_away_before_the_can_is_called_lost(
+    holding: Carrying, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot, scene = holding()
+    judged, looked = verification.standing, []
+
+    def hidden_at_first(*given: Any) -> str:
+        looked.append(given)
+        return "gone" if len(looked) == 1 else judged(*given)
+
+    monkeypatch.setattr(verification, "standing", hidden_at_first)
+    monkeypatch.setattr(verification, "beside", lambda *given: None)
+    monkeypatch.setattr(SeenSpace, "hidden", lambda self, points, slack: np.ones(len(points)))
+    result = place(robot, scene, spots((0.7, 0.0)))
+    assert result.status == "SUCCESS", result.explain()
+    assert len(looked) == 2
+    ready = robot.description.named_poses["ready"]
+    state = robot.state()
+    arm = robot.description.groups["arm"].joints
+    assert all(abs(state.position(name) - ready[name]) < 0.05 for name in arm if name in ready)

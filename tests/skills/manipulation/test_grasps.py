@@ -115,7 +115,7 @@ def test_a_hand_that_is_hardly_wider_than_the_object_is_enough_where_it_must_be(
     width: float,
 ) -> None:
     one = thing("cylinder", (width, width, 0.1))
-    held = [g for g in grasps_for(one, HAND, PALM, opening=TIGHT) if not g.rim]
+    held = [g for g in grasps_for(one, HAND, PALM, tight=True) if not g.rim]
     assert bool(held) is (width <= HAND.max_width - TIGHT)
     assert TIGHT < OPENING
 

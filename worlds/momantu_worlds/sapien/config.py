@@ -37,6 +37,9 @@ class Physics:
     finger_damping: float = 2e2
     """Stiffness and damping of the fingers, N/m, N s/m; at 60 N the force limit is reached 6 mm
     before the target."""
+    finger_rotor: float = 0.75
+    """Inertia of the motor of a finger that turns, as mass at the pads, kg, where the robot's
+    description gives none."""
     tendon_stiffness: float = 1e5
     tendon_damping: float = 1e3
     """Stiffness and damping of the coupling that keeps both fingers equally far open, N/m, N

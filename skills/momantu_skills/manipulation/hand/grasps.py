@@ -39,6 +39,8 @@ OPENING = 0.014
 """How much wider than the object the open gripper must be, m."""
 TIGHT = 2 * ROOM
 """The same where no other grasp is left, m: the detection error on both sides."""
+TIGHT_SHARE = 0.006
+"""PAD_SHARE where no other grasp is left, m: more than the detection error."""
 TOP_PENALTY = 3.0
 """Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
@@ -88,22 +90,24 @@ def grasps_for(
     hand: EndEffector,
     palm: Array,
     fingers: Sequence[Array] = (),
-    opening: float = OPENING,
+    tight: bool = False,
 ) -> list[Grasp]:
     """All useful grasps, in a fixed order; those over its rim if the object is too wide for others.
 
     palm: corners (n, 3) of the hand's body in the grasp frame, m. fingers: planes (k, 4) around
     each open finger in the same frame, outward normal and offset. If the clearance near the
-    knuckles is less than between the pads, the fingers hold the object farther out. opening: how
-    much wider than the object the open gripper must be, m.
+    knuckles is less than between the pads, the fingers hold the object farther out. tight: those
+    too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     """
+    opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
     fitting = [a for a in _approaches(thing) if a[0] <= hand.max_width - opening]
     for width, direction, top in fitting:
         if top:
             found += _from_above(thing, hand, fingers, direction, width)
         else:
-            found += _from_side(thing, hand, palm, fingers, direction, width)
+            farthest = _farthest(thing, hand, direction, share)
+            found += _from_side(thing, hand, palm, fingers, direction, width, farthest)
     if not fitting:
         found = list(_over_rim(thing, hand))
     return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
@@ -132,9 +136,9 @@ def _from_side(
     fingers: Sequence[Array],
     direction: float,
     width: float,
+    farthest: float,
 ) -> Iterator[Grasp]:
     surface = _surface(thing)
-    farthest = _farthest(thing, hand, direction)
     for tilt, share in product(TILTS, HEIGHTS):
         x = np.array(
             [
@@ -155,10 +159,10 @@ def _from_side(
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 
 
-def _farthest(thing: DetectedObject, hand: EndEffector, direction: float) -> float:
-    """Largest distance of the grasp frame behind the object's axis, m."""
+def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share: float) -> float:
+    """Largest distance of the grasp frame behind the object's axis, m; share: see PAD_SHARE."""
     if thing.shape == "cylinder":
-        return hand.pad_length / 2 - PAD_SHARE
+        return hand.pad_length / 2 - share
     along = abs(math.cos(direction)) * thing.size[0] + abs(math.sin(direction)) * thing.size[1]
     return along / 2 + hand.pad_length / 2 - FACE_SHARE
 

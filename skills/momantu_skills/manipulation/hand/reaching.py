@@ -14,7 +14,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.hand.grasps import TIGHT, Grasp, grasps_for
+from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
 from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
@@ -123,7 +123,7 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
 def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
     """The grasps that the hand is wide enough for; over a rim, those that pictures show room for.
 
-    Where there are none, those for which the open hand is hardly wider than the object.
+    Where there are none, those for which the hand is hardly large enough.
 
     Raises:
         Failure: NO_GRASP if there are none of these either.
@@ -136,7 +136,7 @@ def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
         grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
         grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
     if not grasps:
-        tight = grasps_for(thing, effector, model.palm, model.open_fingers, TIGHT)
+        tight = grasps_for(thing, effector, model.palm, model.open_fingers, tight=True)
         grasps = [grasp for grasp in tight if not grasp.rim]
     if grasps:
         return grasps

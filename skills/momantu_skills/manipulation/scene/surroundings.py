@@ -276,6 +276,16 @@ class _View:
         passed[inside] = before
         return passed
 
+    def hides(self, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Which points (n, 3) lie `slack` m behind what the picture shows, or beside it: (n,)."""
+        z, u, v = self._pixels(points)
+        hidden = ~self._inside(z, u, v)
+        inside = np.flatnonzero(~hidden)
+        rows, columns = (v[inside] / STRIDE).astype(np.int64), (u[inside] / STRIDE).astype(np.int64)
+        depth = self.depth[rows, columns]
+        hidden[inside] = (depth > 0.0) & (depth < z[inside] - slack)
+        return hidden
+
     def _pixels(self, points: Array) -> tuple[Array, Array, Array]:
         """Depth, column and row (n,) each of points (n, 3)."""
         own = self.odom_from_camera.inverse().apply(points)
@@ -312,6 +322,15 @@ class SeenSpace:
         for view in self._views:
             shown |= view.shows(points)
         return shown
+
+    def hidden(self, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Which points (n, 3) in odom the newest picture does not show: (n,).
+
+        They lie beside it, or `slack` m behind what it shows.
+        """
+        if not self._views:
+            return np.ones(len(points), dtype=np.bool_)
+        return self._views[-1].hides(points, slack)
 
     def free(self, points: Array, slack: float, doubt: float) -> NDArray[np.bool_]:
         """Which points (n, 3) in odom a picture has shown to be free: (n,).

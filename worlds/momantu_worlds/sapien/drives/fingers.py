@@ -70,20 +70,31 @@ def fingers_of(
                 f"the finger joint {name!r} of {description.name} does not move its finger along y "
                 f"of {effector.frame!r}, the direction in which the gripper closes; turn that frame"
             )
-        gains = with_own(simulation.drives.get(name), _usual(lever, knuckle, physics))
+        usual = _usual(lever, knuckle, _turns(description, name), physics)
+        gains = with_own(simulation.drives.get(name), usual)
         way = rows[0][1] - rows[-1][1]
         sign = math.copysign(1.0, way)
         found[name] = Finger(joints[name], gains, lever, sign, abs(way), rows[0][1], knuckle)
     return found
 
 
-def _usual(lever: float, knuckle: str | None, physics: Physics) -> Gains:
-    """Gains at the pads as those of a joint; a joint that hangs on another is held stiffly."""
+def _usual(lever: float, knuckle: str | None, turns: bool, physics: Physics) -> Gains:
+    """Gains at the pads as those of a joint; a joint that follows another is held stiffly.
+
+    A finger that turns feels the rotor of its motor through the gears: without it, light fingers
+    give way to what they hold, and it creeps out of them.
+    """
     if knuckle is None:
         stiffness, damping, force = physics.finger_stiffness, physics.finger_damping, 0.0
     else:
         stiffness, damping, force = physics.tendon_stiffness, physics.tendon_damping, math.inf
-    return Gains(stiffness * lever**2, damping * lever**2, force, 0.0)
+    rotor = physics.finger_rotor * lever**2 if turns else 0.0
+    return Gains(stiffness * lever**2, damping * lever**2, force, rotor)
+
+
+def _turns(description: RobotDescription, joint: str) -> bool:
+    tree = description.kinematics()
+    return next(each.kind for each in tree.joints() if each.name == joint) != "prismatic"
 
 
 def knuckle_of(
