@@ -15,6 +15,7 @@ from typing import Protocol, TypeAlias, runtime_checkable
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import ObjectClass
+from momantu_bt.tags import USUAL_FAMILY
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,7 @@ class TagAt:
     odom_from_tag: Transform
     tolerance: float
     turn_tolerance: float
+    family: str = USUAL_FAMILY
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,7 @@ class TagOn:
 
     tag_id: int
     surface: str | None = None
+    family: str = USUAL_FAMILY
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +107,16 @@ class CameraOn:
 
 
 @dataclass(frozen=True, slots=True)
+class CameraAt:
+    """The camera of that optical frame is at the pose in the map, within m and rad."""
+
+    frame: str
+    map_from_camera: Transform
+    tolerance: float
+    turn_tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
 class Holding:
     """Something that can be brought is between the fingers, off every surface; or nothing is."""
 
@@ -150,6 +163,7 @@ Sentence: TypeAlias = (
     | BaseAt
     | BaseNear
     | CameraOn
+    | CameraAt
     | Holding
     | GripperOpen
     | SetDown

@@ -202,6 +202,23 @@ class DetectedObject:
 
 
 @dataclass(frozen=True, slots=True)
+class DetectedTag:
+    """An AprilTag, or a bundle of them, that was seen, as apriltag_ros tells it.
+
+    name: of what the site knows, else empty. ids: of the tags that were seen and count. edges:
+    theirs, m. pose: of the tag's centre or the bundle's frame, z out of the print. covariance:
+    (6, 6), row by row: x, y, z in m, then rotations about the fixed axes of the pose's frame, rad.
+    """
+
+    name: str
+    family: str
+    ids: tuple[int, ...]
+    edges: tuple[float, ...]
+    pose: Pose
+    covariance: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SupportPlane:
     """A horizontal surface. pose: `odom_from_plane`, z up, origin on the surface.
 
@@ -257,6 +274,7 @@ VALUE_TYPES: dict[str, type] = {
     "pose2d": Pose2D,
     "object_class": ObjectClass,
     "detected_object": DetectedObject,
+    "detected_tag": DetectedTag,
     "plane": SupportPlane,
     "tracking_feedback": TrackingFeedback,
     "waypoint_status": WaypointStatus,

@@ -16,7 +16,7 @@ class _Missing:
 MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
-NAMES = ("place", "surface", "named_pose", "category", "goal", "spot")
+NAMES = ("place", "surface", "named_pose", "category", "goal", "spot", "tag")
 """What a text input may name, so that the checker knows the valid values.
 
 `goal` is a place, or a pose of the map written as text (see `Pose2D.from_text`), where the robot is

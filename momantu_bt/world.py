@@ -17,6 +17,7 @@ from momantu_bt.errors import ExitCode, MomantuError
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.marker import Marker
 from momantu_bt.messages import ObjectClass
+from momantu_bt.tags import TagBundle
 
 if TYPE_CHECKING:
     from momantu_bt.robot import Robot, RobotDescription
@@ -106,8 +107,9 @@ class Site:
     map_file: the floor plan, in map_server's YAML format. overhang_file: a map in the same format
     of known furniture that the laser's plane misses. start: the robot's approximate start pose in
     the map; start_sigma: its standard deviations (m, rad). surfaces: in a run a `Surfaces`, which
-    skills correct. services: parameters of services and skills, by name. area: the least x and y
-    and the largest x and y of the floor plan, m; None if they are not known.
+    skills correct. tags: AprilTags and bundles of them, by name. services: parameters of services
+    and skills, by name. area: the least x and y and the largest x and y of the floor plan, m; None
+    if they are not known.
     """
 
     name: str
@@ -118,6 +120,7 @@ class Site:
     places: Mapping[str, Pose2D] = field(default_factory=lambda: MappingProxyType({}))
     surfaces: Mapping[str, Surface] = field(default_factory=lambda: MappingProxyType({}))
     objects: Mapping[str, ObjectClass] = field(default_factory=lambda: MappingProxyType({}))
+    tags: Mapping[str, TagBundle] = field(default_factory=lambda: MappingProxyType({}))
     services: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: MappingProxyType({}))
     area: tuple[float, float, float, float] | None = None
 

@@ -68,6 +68,7 @@ def example_value(port: Port, site: Site, description: RobotDescription) -> Any:
     named = {
         "place": site.known_places(),
         "surface": tuple(site.surfaces),
+        "tag": tuple(site.tags),
         "named_pose": tuple(description.named_poses),
     }.get(port.names or "")
     if named:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass
+from momantu_bt.tags import TagBundle
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.world import TICK, Site, Surface, TreeLine, Verdict, Video, View
 
@@ -18,6 +19,7 @@ def scripted_site(
     surfaces: Mapping[str, Surface] | None = None,
     map_file: Path | None = None,
     start: Pose2D | None = None,
+    tags: Mapping[str, TagBundle] | None = None,
 ) -> Site:
     """A site with two tables 0.7 m high at (2, 0) and (-2, 0), unless other surfaces are given."""
     tables = {
@@ -30,6 +32,7 @@ def scripted_site(
         start=start or Pose2D(0.0, 0.0, 0.0),
         places=places or {"start": Pose2D(0.0, 0.0, 0.0)},
         surfaces=tables if surfaces is None else surfaces,
+        tags=tags or {},
         objects={"can": ObjectClass("can", diameter=0.07, height=0.13)},
     )
 

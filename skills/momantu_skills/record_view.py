@@ -18,7 +18,7 @@ from momantu_bt.skill import Failure, In, Out, Run, Skill, compute
 from momantu_bt.symptom import Symptom
 
 with lazily():
-    from momantu_skills.perception import tags
+    from momantu_skills.perception.tags import detector
 
 BUDGET = 0.05
 """Time allowed for searching one picture, s."""
@@ -62,7 +62,7 @@ class RecordView(Skill):
             yield "waiting"
         image, state = read_camera(robot), robot.state()
         found: dict[int, Array] = yield from compute(
-            partial(tags.find_tags, [image]), budget=BUDGET
+            partial(detector.find_tags, [image]), budget=BUDGET
         )
         if not found:
             raise Failure("TAG_NOT_SEEN", "the camera's picture shows no tag")

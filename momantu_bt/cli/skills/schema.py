@@ -54,6 +54,7 @@ def _names(world: str | None, robot: str | None) -> Names:
     if world is not None:
         site = WORLDS.load(world).site()
         names |= {"place": tuple(site.known_places()), "surface": tuple(site.surfaces)}
+        names["tag"] = tuple(site.tags)
     if robot is not None:
         names["named_pose"] = tuple(load_robot(robot).named_poses)
     return names

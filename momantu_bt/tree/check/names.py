@@ -19,6 +19,7 @@ _KINDS = {
     "place": ("place", "places"),
     "surface": ("surface", "surfaces"),
     "named_pose": ("named pose", "named poses"),
+    "tag": ("tag", "tags"),
 }
 
 

@@ -223,6 +223,8 @@ class Context:
             return poses or None  # a robot without an arm has none, and runs no node that needs one
         if self.site is None:
             return None
+        if kind == "tag":
+            return tuple(self.site.tags)
         return self.site.known_places() if kind == "place" else tuple(self.site.surfaces)
 
 

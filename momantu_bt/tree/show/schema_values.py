@@ -25,7 +25,7 @@ SCRIPT: Schema = {
 """A condition or script."""
 
 Names: TypeAlias = Mapping[str, Sequence[str]]
-"""Valid values by kind: "place", "surface", "named_pose"."""
+"""Valid values by kind: "place", "surface", "named_pose", "tag"."""
 
 _DEEPEST = 4
 """The most levels of fields within fields. Deeper fields may have any value."""

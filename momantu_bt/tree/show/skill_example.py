@@ -28,6 +28,7 @@ WIDEST = 76
 _NAMED = {
     "place": "table_a",
     "surface": "table_a",
+    "tag": "dock",
     "named_pose": "home",
     "goal": "table_a",
     "spot": "table_a",

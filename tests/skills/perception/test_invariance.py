@@ -14,7 +14,7 @@ from momantu_skills.perception.geometry.rectangles import smallest_rectangle
 from momantu_skills.perception.objects.splitting import _circumcircles, split
 from momantu_skills.perception.surface.segment import SegmentConfig, Thing, group
 from momantu_skills.perception.surface.spots import Ground, SpotConfig, free_spots
-from momantu_skills.perception.tags import TagSighting, average
+from momantu_skills.perception.tags.single import TagSighting, average
 
 from momantu_bt.geometry import Pose2D, Transform
 
@@ -133,9 +133,13 @@ def test_the_average_of_sightings_moves_with_them_and_has_no_order(
     for n in range(5):
         turn = np.array([1.0, *(0.02 * random.normal(size=3))]) * random.choice([-1.0, 1.0])
         error = Transform(0.003 * random.normal(size=3), turn)
-        sightings.append(TagSighting(error, float(random.uniform(0.001, 0.01)), float(n)))
+        sightings.append(
+            TagSighting(error, float(random.uniform(0.001, 0.01)), float(n), np.eye(6))
+        )
     here = average(sightings)
-    there = average([TagSighting(truth @ s.odom_from_tag, s.sigma, s.stamp) for s in sightings])
+    there = average(
+        [TagSighting(truth @ s.odom_from_tag, s.sigma, s.stamp, np.eye(6)) for s in sightings]
+    )
     expected = truth @ here.odom_from_tag
     assert there.odom_from_tag.position == pytest.approx(expected.position, abs=1e-9)
     assert there.odom_from_tag.angle_to(expected) < 1e-5

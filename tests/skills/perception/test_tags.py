@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.perception.tags import UNIT_CORNERS, TagSighting, average, find_tags, locate
+from momantu_skills.perception.tags.detector import find_tags
+from momantu_skills.perception.tags.single import TagSighting, average, locate
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
 from momantu_bt.messages import CameraImage
+from momantu_bt.tags import UNIT_CORNERS
 
 K = np.array([[554.0, 0.0, 319.5], [0.0, 554.0, 239.5], [0.0, 0.0, 1.0]])
 EDGE = 0.15
+COV = np.eye(6)
 angle = st.floats(-0.9, 0.9)
 
 
@@ -78,17 +81,19 @@ def test_noise_in_the_dark_is_no_tag_however_it_is_lifted() -> None:
 
 
 def test_the_average_leans_on_the_surer_and_is_surer_itself() -> None:
-    sightings = [TagSighting(Transform((0.001 * n, 0.0, 0.0)), 0.002, float(n)) for n in range(4)]
+    sightings = [
+        TagSighting(Transform((0.001 * n, 0.0, 0.0)), 0.002, float(n), COV) for n in range(4)
+    ]
     together = average(sightings)
     assert together.odom_from_tag.position[0] == pytest.approx(0.0015)
     assert together.sigma < 0.002
     assert together.stamp == 3.0
-    sure = average([TagSighting(Transform((1.0, 0.0, 0.0)), 0.0005, 0.0), sightings[0]])
+    sure = average([TagSighting(Transform((1.0, 0.0, 0.0)), 0.0005, 0.0, COV), sightings[0]])
     assert sure.odom_from_tag.position[0] > 0.9
 
 
 def test_turns_are_averaged_whatever_their_sign() -> None:
     turn = quaternion_from_rpy(0.0, 0.0, 3.1)
-    there = TagSighting(Transform((0.0, 0.0, 0.0), turn), 0.001, 0.0)
-    back = TagSighting(Transform((0.0, 0.0, 0.0), -turn), 0.001, 0.1)
+    there = TagSighting(Transform((0.0, 0.0, 0.0), turn), 0.001, 0.0, COV)
+    back = TagSighting(Transform((0.0, 0.0, 0.0), -turn), 0.001, 0.1, COV)
     assert average([there, back]).odom_from_tag.angle_to(there.odom_from_tag) < 1e-6

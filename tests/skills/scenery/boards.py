@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from momantu_skills.calibration.camera.board import Board, Seen
 from momantu_skills.calibration.models import Model
-from momantu_worlds.scenes.catalogue.tag36h11 import tag_cells
+from momantu_worlds.scenes.catalogue.tags import tag_cells
 
 from momantu_bt.geometry import Array
 

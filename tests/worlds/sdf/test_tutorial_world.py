@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 from momantu_worlds.robots import fetch
-from momantu_worlds.scenes.catalogue.tag36h11 import tag_picture
+from momantu_worlds.scenes.catalogue.tags import tag_picture
 from momantu_worlds.scenes.file.reader import read_world
 from momantu_worlds.sdf.body.parts import MeshPart
 from momantu_worlds.sdf.importing import Import, import_world

@@ -8,7 +8,6 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_bt.robot_parts import CameraSensor, Exposure
-from momantu_worlds.scenes.catalogue.tag36h11 import CELLS
 from momantu_worlds.scenes.geometry.bodies import Episode
 
 LEAST_CELL = 1.4
@@ -45,11 +44,11 @@ def least_light(exposure: Exposure) -> float:
 
 
 def cell_widths(
-    camera: CameraSensor, eyes: Array, middle: Array, normal: Array, edge: float
+    camera: CameraSensor, eyes: Array, middle: Array, normal: Array, cell: float
 ) -> Array:
-    """Narrow side (n,) of a square of a tag as seen from eyes (n, 3), px; edge: the paper's, m."""
+    """Narrow side (n,) of a square of a tag as seen from eyes (n, 3), px; cell: its side, m."""
     rays = eyes - middle
     distances = np.linalg.norm(rays, axis=1)
     focal = camera.width / 2 / math.tan(camera.horizontal_fov / 2)
     slant = np.maximum(rays @ normal, 0.0) / distances
-    return np.asarray(focal * edge / CELLS * slant / distances)
+    return np.asarray(focal * cell * slant / distances)

@@ -14,7 +14,8 @@ from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.legible import LEAST_CELL, cell_widths, least_light, light_on
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.geometry.bodies import Body, Picture
+from momantu_worlds.scenes.catalogue.tags import CELL
+from momantu_worlds.scenes.geometry.bodies import Body, Part, Picture
 
 RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
 """Distances from the tag along the floor that are tested, m. Few cameras read it from farther
@@ -40,9 +41,9 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
     """Check that every tag can be read from some reachable point."""
     for body in scenario.bodies:
         if body.category == "tag" and scenario.robot.eyes:
-            hidden = _hidden(scenario, body)
-            if hidden is not None:
-                why, cure = hidden
+            hidden = [_hidden(scenario, body, part) for part in body.parts]
+            if hidden[0] is not None and all(each is not None for each in hidden):
+                why, cure = hidden[0]
                 yield FindingAtKeys(
                     Severity.ERROR,
                     "tag-unseen",
@@ -53,9 +54,9 @@ def tags(scenario: Scenario) -> Iterator[FindingAtKeys]:
                 )
 
 
-def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
-    """Why a tag cannot be read, and what to do; None if it can."""
-    points, normal, edge = _points(tag)
+def _hidden(scenario: Scenario, tag: Body, part: Part) -> tuple[str, str] | None:
+    """Why a tag, or one of a bundle, cannot be read, and what to do; None if it can."""
+    points, normal, cell = _points(tag, part)
     within = [
         name
         for name, solids in scenario.solids.items()
@@ -71,7 +72,7 @@ def _hidden(scenario: Scenario, tag: Body) -> tuple[str, str] | None:
     dark = _dark(scenario, middle, normal)
     if dark is not None:
         return dark
-    return _from_stands(scenario, tag, points, normal, edge, stands)
+    return _from_stands(scenario, tag, points, normal, cell, stands)
 
 
 def _dark(scenario: Scenario, middle: Array, normal: Array) -> tuple[str, str] | None:
@@ -92,7 +93,7 @@ def _dark(scenario: Scenario, middle: Array, normal: Array) -> tuple[str, str] |
 
 
 def _from_stands(
-    scenario: Scenario, tag: Body, points: Array, normal: Array, edge: float, stands: Array
+    scenario: Scenario, tag: Body, points: Array, normal: Array, cell: float, stands: Array
 ) -> tuple[str, str] | None:
     """As `_hidden`, by looking from each of the stands."""
     middle, camera = points.mean(axis=0), scenario.robot.camera
@@ -107,7 +108,7 @@ def _from_stands(
         free = eyes[_free(scenario, eyes, points, tag.name, blockers)]
         if len(free) == 0:
             continue
-        if camera is None or (cell_widths(camera, free, middle, normal, edge).max() >= LEAST_CELL):
+        if camera is None or (cell_widths(camera, free, middle, normal, cell).max() >= LEAST_CELL):
             return None
         small += len(free)
     if facing_eyes == 0:
@@ -128,15 +129,14 @@ def _from_stands(
     return f"{blocker} hides it{many}", f"move the tag or {blocker}"
 
 
-def _points(tag: Body) -> tuple[Array, Array, float]:
-    """Points (9, 3) just before a tag's paper, the direction that it faces, map, and its edge."""
-    part = next(part for part in tag.parts if isinstance(part.geometry, Picture))
+def _points(tag: Body, part: Part) -> tuple[Array, Array, float]:
+    """Points (9, 3) just before a tag's paper, the direction that it faces, map, and a cell, m."""
     assert isinstance(part.geometry, Picture)
     map_from_paper = tag.map_from_body @ part.body_from_part
     flat = INSIDE * GRID * part.geometry.size
     own = np.column_stack([flat, np.full(len(flat), PAPER)])
-    edge = min(part.geometry.size)
-    return map_from_paper.apply(own), map_from_paper.rotation[:, 2], edge
+    cell = min(part.geometry.size) * CELL / part.geometry.pixels.shape[0]
+    return map_from_paper.apply(own), map_from_paper.rotation[:, 2], cell
 
 
 def _eyes(scenario: Scenario, stands: Array, middle: Array, ring: float) -> Array:

@@ -58,7 +58,8 @@ def nominal(path: Path) -> Nominal:
     if found is None:
         world = load_world(path)
         found = Nominal(nominal_site(world), world.robot)
-        store_nominal(found, text)
+        if world.site.tags_file is None:  # that file may change while this one does not
+            store_nominal(found, text)
     return found
 
 

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
+from momantu_bt.tags import UNIT_CORNERS
 from momantu_skills.calibration.errors import CalibrationError
 
 with lazily():
     import cv2
 
-    from momantu_skills.perception import tags
+    from momantu_skills.perception.tags import detector
 
 KINDS = ("chessboard", "charuco", "aprilgrid")
 _WORDS = re.compile(r"([a-z]+)[ :]+([0-9]+)x([0-9]+)")
@@ -58,7 +59,7 @@ class Board:
     def _corners_of_tags(self) -> Array:
         """Four corners of each tag. As Kalibr prints it, tag 0 is at the bottom left; y is up."""
         cells = np.mgrid[0 : self.columns, 0 : self.rows].T.reshape(-1, 1, 2)
-        flat = cells * (self.square + self.gap) + (tags.UNIT_CORNERS + 0.5) * self.square
+        flat = cells * (self.square + self.gap) + (UNIT_CORNERS + 0.5) * self.square
         return np.column_stack([flat.reshape(-1, 2), np.zeros(4 * len(cells))])
 
 
@@ -149,7 +150,7 @@ def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
 
 
 def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
-    found = tags.tags_in(gray)
+    found = detector.tags_in(gray)
     own = sorted(each for each in found if each < board.columns * board.rows)
     if 4 * len(own) < _LEAST_POINTS:
         return None

@@ -13,7 +13,7 @@ from momantu_worlds.sapien.faults.tag import marker_picture
 from momantu_worlds.sapien.faults.tops import table_top, things_on
 from momantu_worlds.sapien.sensors.camera import Camera
 from momantu_worlds.scenes.arrange.spots import SetDown, free_spots
-from momantu_worlds.scenes.catalogue.tag36h11 import tag_cells
+from momantu_worlds.scenes.catalogue.tags import tag_cells
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 from momantu_bt.geometry import Pose2D

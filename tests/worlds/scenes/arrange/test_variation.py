@@ -18,7 +18,7 @@ from momantu_worlds.scenes.arrange.spots import (
 )
 from momantu_worlds.scenes.arrange.spots import outline_points as body_points
 from momantu_worlds.scenes.arrange.variation import vary
-from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge
+from momantu_worlds.scenes.catalogue.tags import picture_edge
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap, passages
 from momantu_worlds.scenes.loading import draw_episode, load_world
 

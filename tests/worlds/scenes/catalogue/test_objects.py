@@ -4,17 +4,26 @@ import math
 from itertools import pairwise
 
 import numpy as np
-import pyapriltags
 import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
+from momantu_skills.perception.tags.detector import find_all
 from momantu_worlds.scenes.catalogue.furniture import CATALOGUE, furniture, usual_size
 from momantu_worlds.scenes.catalogue.lathe import lathe, shell_pieces
 from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, Thing
 from momantu_worlds.scenes.catalogue.shelves import BOARDED, board, boarded
-from momantu_worlds.scenes.catalogue.tag36h11 import CODES, picture_edge, tag_cells, tag_picture
+from momantu_worlds.scenes.catalogue.tags import (
+    known_ids,
+    picture_edge,
+    shown_by,
+    tag_cells,
+    tag_picture,
+)
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Hull, Mesh, Part
+
+from momantu_bt.messages import CameraImage
+from momantu_bt.tags import FAMILIES
 
 COLOR = (0.5, 0.5, 0.5)
 SIZES = {
@@ -113,14 +122,28 @@ def test_furniture_fills_its_size_and_stands_on_the_floor(kind):
     assert np.all(high - low >= 0.8 * np.array(usual_size(kind)))
 
 
-@pytest.mark.parametrize("tag_id", range(0, len(CODES), 7))
-def test_a_detector_reads_the_tag_upright(tag_id):
-    picture = np.pad(tag_picture(tag_id, cell=12)[:, :, 0], 20, constant_values=200)
-    found = pyapriltags.Detector(families="tag36h11").detect(np.ascontiguousarray(picture))
-    assert [(d.tag_id, d.hamming) for d in found] == [(tag_id, 0)]
+FAMILY_AND_ID = [(f, i) for f in FAMILIES for i in range(0, known_ids(f), 1 + known_ids(f) // 6)]
+
+
+@pytest.mark.parametrize(("family", "tag_id"), FAMILY_AND_ID)
+def test_a_detector_reads_the_tag_upright_and_measures_its_edge(family, tag_id):
+    around = ((40, 40), (40, 40), (0, 0))
+    picture = np.pad(tag_picture(tag_id, family), around, constant_values=200)
+    image = CameraImage(0.0, "camera", picture, np.zeros(picture.shape[:2]), np.eye(3))
+    (found,) = find_all([image], [family])
+    assert found.key == (family, tag_id)
     # AprilTag's corners begin at the bottom left of an upright tag
-    first = found[0].corners[0] - found[0].center
-    assert first[0] < 0 < first[1]
+    middle, first = found.corners.mean(axis=0), found.corners[0]
+    assert first[0] < middle[0]
+    assert first[1] > middle[1]
+    edge = np.linalg.norm(found.corners[1] - first)
+    assert picture_edge(edge, family) == pytest.approx(picture.shape[0] - 80, rel=0.01)
+
+
+def test_every_tag_is_told_by_its_picture():
+    for family, tag_id in FAMILY_AND_ID:
+        assert shown_by(tag_picture(tag_id, family)) == (family, tag_id)
+    assert shown_by(np.zeros((80, 80, 3), dtype=np.uint8)) is None
 
 
 def test_a_tag_has_a_black_border_and_a_white_margin():
@@ -130,9 +153,9 @@ def test_a_tag_has_a_black_border_and_a_white_margin():
     assert picture_edge(0.15) == pytest.approx(0.1875)
 
 
-@pytest.mark.parametrize("tag_id", [-1, 30])
+@pytest.mark.parametrize("tag_id", [-1, 587])
 def test_an_unknown_tag_is_refused(tag_id):
-    with pytest.raises(ValueError, match="known: 0 to 29"):
+    with pytest.raises(ValueError, match="known: 0 to 586"):
         tag_cells(tag_id)
 
 

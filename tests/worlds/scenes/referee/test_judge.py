@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from momantu_worlds.robots import fetch
 from momantu_worlds.scenes.catalogue.furniture import furniture
 from momantu_worlds.scenes.catalogue.objects import Thing
-from momantu_worlds.scenes.catalogue.tag36h11 import tag_picture
+from momantu_worlds.scenes.catalogue.tags import tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Box, Part, Picture
 from momantu_worlds.scenes.geometry.solids import PlacedBody, Scene
 from momantu_worlds.scenes.referee.judge import ClaimJudge

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Transform
+from momantu_bt.tags import USUAL_FAMILY
 from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import clear_on, table_top
-from momantu_worlds.scenes.catalogue.tag36h11 import CODES, tag_picture
+from momantu_worlds.scenes.catalogue.tags import known_ids, shown_by, tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Part, Picture
 from momantu_worlds.scenes.geometry.parts import block
 from momantu_worlds.scenes.geometry.prisms import body_prism
@@ -60,9 +59,11 @@ def covered(stage: Stage, fault: Fault) -> Overlaid:
 def wrong_id(stage: Stage, fault: Fault) -> Overlaid:
     """Another tag of the family, of the same size, on thin paper. Parameters: id, its number."""
     only(fault, "id")
-    number = whole(fault, "id", 0, len(CODES) - 1)
-    own, pixels = marker_picture(stage), tag_picture(number)
-    if np.array_equal(own.pixels, pixels):
+    own = marker_picture(stage)
+    family, own_id = shown_by(own.pixels) or (USUAL_FAMILY, None)
+    number = whole(fault, "id", 0, known_ids(family) - 1)
+    pixels = tag_picture(number, family)
+    if number == own_id:
         raise FaultError(f"{fault.name}: {number} is the id that the tag has; name another one")
     part = Part(Picture(own.size, pixels), Transform((0.0, 0.0, PAPER)), collision=False)
     return Overlaid(stage, fault, lambda at: Body("other_tag", "tag", at, (part,)))

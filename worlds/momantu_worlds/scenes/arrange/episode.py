@@ -16,7 +16,7 @@ from momantu_worlds.scenes.arrange.obstacles import floor_extent
 from momantu_worlds.scenes.arrange.surfaces import board_part, carriers
 from momantu_worlds.scenes.catalogue.furniture import furniture, round_table
 from momantu_worlds.scenes.catalogue.shelves import boarded
-from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge, tag_picture
+from momantu_worlds.scenes.catalogue.tags import picture_edge, tag_picture
 from momantu_worlds.scenes.file.furniture import Piece, Table
 from momantu_worlds.scenes.file.values import transform
 from momantu_worlds.scenes.file.walls import LEAF
@@ -143,10 +143,13 @@ def piece_parts(world: WorldFile, piece: Piece, without: Collection[int] = ()) -
 
 
 def tag_body(tag: PlacedTag, layout: Layout) -> Body:
-    """The tag's paper: x to the right of its picture, y up in it, z out of it."""
-    edge = picture_edge(tag.note.edge)
-    part = Part(Picture((edge, edge), tag_picture(tag.note.id)), collision=False)
-    return Body(tag.name, "tag", tag_pose(tag, layout), (part,))
+    """The paper of each tag: x to the right of its picture, y up in it, z out of it."""
+    family, parts = tag.note.family, []
+    for plate in tag.note.plates:
+        edge = picture_edge(plate.edge, family)
+        picture = Picture((edge, edge), tag_picture(plate.tag_id, family))
+        parts.append(Part(picture, plate.bundle_from_tag, collision=False))
+    return Body(tag.name, "tag", tag_pose(tag, layout), tuple(parts))
 
 
 def tag_pose(tag: PlacedTag, layout: Layout) -> Transform:
@@ -154,7 +157,12 @@ def tag_pose(tag: PlacedTag, layout: Layout) -> Transform:
     if tag.table is not None:
         return layout.tables[tag.table].map_from_top @ tag.at.transform(TAG_LIFT)
     assert tag.note.hung is not None
-    return transform(tag.note.hung) @ X_TO_Z @ Transform((0.0, 0.0, TAG_LIFT))
+    return map_from_hung(tag.note.hung)
+
+
+def map_from_hung(hung: tuple[float, float, float, float, float, float]) -> Transform:
+    """`map_from_tag` of a tag on a wall; hung: the pose of its middle, x where its face looks."""
+    return transform(hung) @ X_TO_Z @ Transform((0.0, 0.0, TAG_LIFT))
 
 
 def goal_of(goal: GoalDemand) -> Goal:

@@ -30,7 +30,7 @@ from momantu_worlds.scenes.arrange.spots import (
 )
 from momantu_worlds.scenes.catalogue.objects import ObjectKind, Thing
 from momantu_worlds.scenes.catalogue.random_objects import COLORS, draw_look, draw_thing
-from momantu_worlds.scenes.catalogue.tag36h11 import picture_edge
+from momantu_worlds.scenes.catalogue.tags import picture_edge
 from momantu_worlds.scenes.file.objects import ObjectNote, TagNote
 from momantu_worlds.scenes.file.world import WorldFile
 
@@ -278,8 +278,12 @@ def disc_of(placed: PlacedThing) -> Disc:
 
 
 def tag_corner(note: TagNote) -> float:
-    """Distance from the centre of a tag's picture to its corner, m."""
-    return picture_edge(note.edge) / math.sqrt(2.0)
+    """Distance from the centre of a tag or bundle to the farthest corner of a picture, m."""
+    return max(
+        float(np.linalg.norm(plate.bundle_from_tag.position))
+        + picture_edge(plate.edge, note.family) / math.sqrt(2.0)
+        for plate in note.plates
+    )
 
 
 def tag_disc(tag: PlacedTag) -> Disc:

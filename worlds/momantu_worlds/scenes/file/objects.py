@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
 from momantu_bt.descriptions.quantities import Angle, Mass, Size
+from momantu_bt.geometry import Transform
+from momantu_bt.tags import USUAL_FAMILY, TagFamily, TagPlate
 from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind
-from momantu_worlds.scenes.catalogue.tag36h11 import CODES
+from momantu_worlds.scenes.catalogue.tags import known_ids, picture_edge
 from momantu_worlds.scenes.file.values import (
     Friction,
     Name,
@@ -20,6 +22,7 @@ from momantu_worlds.scenes.file.values import (
     Rgb,
     Size3D,
     Turn,
+    transform,
 )
 
 GRIP = 0.6
@@ -79,14 +82,47 @@ class Item(ObjectNote):
     name: Name
 
 
-class TagNote(Part):
-    """An AprilTag of the family 36h11; edge: of its black square, m.
+TagId: TypeAlias = Annotated[int, Field(ge=0)]
+MOST_PLATES = 400
+"""Most tags of a bundle."""
 
-    Flat on a surface (`on`, `at`), or upright (`hung`: x, y, z of its centre in the map, and the
-    direction that its front faces).
+
+class TagGrid(Part):
+    """Tags in rows, their ids counted from `first` at the lower left, row by row upwards.
+
+    gap: between two tags, m.
     """
 
-    id: Annotated[int, Field(ge=0, lt=len(CODES))]
+    columns: Annotated[int, Field(ge=1, le=20)]
+    rows: Annotated[int, Field(ge=1, le=20)]
+    gap: Size
+    first: TagId = 0
+
+
+class PlateNote(Part):
+    """One tag of a bundle. edge: if it differs from the bundle's, m.
+
+    at: in the bundle's frame, whose x points right, y up and z out of the print.
+    """
+
+    id: TagId
+    at: Pose3D
+    edge: Size | None = None
+
+
+class TagNote(Part):
+    """An AprilTag, or several that are fixed to each other; edge: of a tag, m.
+
+    One tag (`id`), a grid of them (`grid`) or any (`bundle`). Flat on a surface (`on`, `at`), or
+    upright (`hung`: x, y, z of its centre in the map, and the direction that its front faces).
+    """
+
+    family: TagFamily = USUAL_FAMILY
+    id: TagId | None = None
+    grid: TagGrid | None = None
+    bundle: Annotated[tuple[PlateNote, ...], Field(min_length=1, max_length=MOST_PLATES)] | None = (
+        None
+    )
     edge: Size
     on: Name | None = None
     at: Point | None = None
@@ -94,6 +130,47 @@ class TagNote(Part):
     shift: NotNegative = 0.0
     yaw: Angle = 0.0
     turn: Turn = math.pi
+
+    @model_validator(mode="after")
+    def _known_ids(self) -> Self:
+        if sum(each is not None for each in (self.id, self.grid, self.bundle)) != 1:
+            raise ValueError("write one of id, grid and bundle")
+        most = known_ids(self.family) - 1
+        ids = [plate.tag_id for plate in self.plates]
+        wrong = [each for each in ids if each > most]
+        if wrong:
+            raise ValueError(f"id {wrong[0]}: the ids of {self.family} go from 0 to {most} here")
+        paper = picture_edge(self.edge, self.family)
+        if self.grid is not None and self.grid.gap < paper - self.edge - 1e-9:
+            raise ValueError(
+                f"the tags would overlap: with what belongs around it a tag is {paper:g} m wide; "
+                f"make the gap {paper - self.edge:g} m or more"
+            )
+        if len(set(ids)) < len(ids):
+            twice = next(each for each in ids if ids.count(each) > 1)
+            raise ValueError(f"the id {twice} is there twice; a bundle has each id once")
+        return self
+
+    @property
+    def plates(self) -> tuple[TagPlate, ...]:
+        """Its tags, in the frame of the middle of all."""
+        if self.bundle is not None:
+            return tuple(
+                TagPlate(each.id, each.edge or self.edge, transform(each.at))
+                for each in self.bundle
+            )
+        if self.grid is None:
+            return (TagPlate(self.id or 0, self.edge),)
+        columns, rows, step = self.grid.columns, self.grid.rows, self.edge + self.grid.gap
+        return tuple(
+            TagPlate(
+                self.grid.first + row * columns + column,
+                self.edge,
+                Transform(((column - (columns - 1) / 2) * step, (row - (rows - 1) / 2) * step, 0)),
+            )
+            for row in range(rows)
+            for column in range(columns)
+        )
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:

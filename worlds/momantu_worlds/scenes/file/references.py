@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
+from momantu_bt.descriptions.apriltag_ros import TagsFileError, read_tags
 from momantu_bt.descriptions.reading import KeyMessage
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
@@ -169,6 +170,22 @@ def _files(world: WorldFile) -> Iterator[KeyMessage]:
             yield (*place, "file"), f"there is no file {use.file!r} beside the world file"
     if world.site.map is not None and (wrong := _map_problem(world, world.site.map)):
         yield ("site", "map"), wrong
+    yield from _told_tags(world)
+
+
+def _told_tags(world: WorldFile) -> Iterator[KeyMessage]:
+    """Tags of the site that neither this file nor the file of tags has."""
+    known = list(world.all_tags)
+    if world.site.tags_file is not None:
+        file = world.beside(world.site.tags_file)
+        try:
+            known += read_tags(file)
+        except TagsFileError as error:
+            yield ("site", "tags_file"), f"{world.site.tags_file!r} cannot be used:\n{error}"
+            return
+    for name in world.site.tags:
+        if name not in known:
+            yield ("site", "tags", name), f"no tag {name!r}; {valid_names(name, known, 'tags')}"
 
 
 def _map_problem(world: WorldFile, name: str) -> str | None:

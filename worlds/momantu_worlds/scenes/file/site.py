@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from momantu_bt.descriptions.quantities import Size
-from momantu_worlds.scenes.file.values import Name, Part, PlanarPose
+from momantu_worlds.scenes.file.values import Name, Part, PlanarPose, Pose3D
 
 
 class ObjectSizes(Part):
@@ -20,15 +20,29 @@ class ObjectSizes(Part):
     depth: Size | None = None
 
 
+class ToldTag(Part):
+    """A tag or bundle that the robot is told of.
+
+    place: in the map, of its frame, whose x points right, y up and z out of the print; if omitted,
+    where this file hangs it.
+    """
+
+    place: Pose3D | None = None
+
+
 class SiteNotes(Part):
     """The site's own data, in addition to what follows from the other sections.
 
     map: map_server YAML of your own floor plan; if omitted, the map is drawn from this file.
-    services: tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
+    tags: tags of this file and of `tags_file` that the robot is told of, by name. tags_file: tags
+    and bundles as tags.yaml of apriltag_ros has them; the robot is told of all of them. services:
+    tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
     """
 
     resolution: Annotated[Size, Field(ge=0.01, le=0.5)] = 0.05
     places: dict[Name, PlanarPose] = {}
     objects: dict[Name, ObjectSizes] = {}
+    tags: dict[str, ToldTag] = {}
+    tags_file: Annotated[str, Field(min_length=1, max_length=500)] | None = None
     services: dict[Name, dict[str, Any]] = {}
     map: Annotated[str, Field(min_length=1, max_length=500)] | None = None

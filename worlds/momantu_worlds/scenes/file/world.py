@@ -81,15 +81,18 @@ class WorldFile(Part):
         return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
 
     def files(self) -> tuple[Path, ...]:
-        """The world file itself and all files that it names: meshes, its own map and its picture.
+        """The world file itself and all files that it names: meshes, its own tags, its own map.
 
         Raises:
             MapError: the map is missing or broken.
         """
-        if self.site.map is None:
-            return (self._file, *self.mesh_files())
-        map_file = self.beside(self.site.map)
-        return (self._file, *self.mesh_files(), map_file, picture_file(map_file))
+        found = [self._file, *self.mesh_files()]
+        if self.site.tags_file is not None:
+            found.append(self.beside(self.site.tags_file))
+        if self.site.map is not None:
+            map_file = self.beside(self.site.map)
+            found += [map_file, picture_file(map_file)]
+        return tuple(found)
 
     @property
     def demands(self) -> tuple[GoalDemand, ...]:

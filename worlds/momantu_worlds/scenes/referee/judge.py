@@ -13,7 +13,7 @@ from momantu_bt import claim as say
 from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import ObjectClass
 from momantu_bt.robot import RobotDescription
-from momantu_worlds.scenes.catalogue.tag36h11 import CODES, tag_picture
+from momantu_worlds.scenes.catalogue.tags import shown_by
 from momantu_worlds.scenes.geometry.bodies import Body, Picture
 from momantu_worlds.scenes.geometry.solids import FLUSH, LevelTop, PlacedBody, Scene
 from momantu_worlds.scenes.referee.demand import tilt
@@ -76,10 +76,14 @@ class ClaimJudge:
                 return self._known(surface) and any(
                     surface in (None, self._scene.below(t)[0]) for t in self._such(asked)
                 )
-            case say.TagAt(tag_id, pose, tolerance, turn):
-                return self._tag_at(tag_id, map_from_odom @ pose, tolerance, turn)
-            case say.TagOn(tag_id, surface):
-                return self._known(surface) and self._tag_on(tag_id, surface)
+            case say.TagAt(tag_id, pose, tolerance, turn, family):
+                return self._tag_at((family, tag_id), map_from_odom @ pose, tolerance, turn)
+            case say.TagOn(tag_id, surface, family):
+                return self._known(surface) and self._tag_on((family, tag_id), surface)
+            case say.CameraAt(frame, pose, tolerance, turn):
+                camera = self._truth.link(frame)
+                near = _apart(camera.position, pose.position) <= tolerance
+                return near and camera.angle_to(pose) <= turn
             case say.PlaneAt(pose, tolerance):
                 return any(self._tops_at(map_from_odom.apply(pose.position), tolerance))
             case say.RoomAt(point, radius, tolerance, within):
@@ -128,20 +132,22 @@ class ClaimJudge:
                 if isinstance(part.geometry, Picture):
                     yield self._truth.pose(name) @ part.body_from_part, part.geometry
 
-    def _tags(self, tag_id: int) -> Iterator[tuple[Transform, Picture]]:
-        wanted = tag_picture(tag_id) if 0 <= tag_id < len(CODES) else None
+    def _tags(self, tag: tuple[str, int]) -> Iterator[tuple[Transform, Picture]]:
+        """The pictures that show a tag of a family and an id."""
         for pose, picture in self._pictures():
-            if wanted is not None and np.array_equal(picture.pixels, wanted):
+            if shown_by(picture.pixels) == tag:
                 yield pose, picture
 
-    def _tag_at(self, tag_id: int, there: Transform, tolerance: float, turn: float) -> bool:
+    def _tag_at(
+        self, wanted: tuple[str, int], there: Transform, tolerance: float, turn: float
+    ) -> bool:
         return any(
             _apart(tag.position, there.position) <= tolerance and tag.angle_to(there) <= turn
-            for tag, _ in self._tags(tag_id)
+            for tag, _ in self._tags(wanted)
         )
 
-    def _tag_on(self, tag_id: int, surface: str | None) -> bool:
-        for tag, picture in self._tags(tag_id):
+    def _tag_on(self, wanted: tuple[str, int], surface: str | None) -> bool:
+        for tag, picture in self._tags(wanted):
             lies_on = {top.body for top in self._tops_at(tag.position, FLUSH)}
             if (surface is None or surface in lies_on) and not self._covered(tag, picture):
                 return True

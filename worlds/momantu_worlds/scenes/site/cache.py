@@ -18,11 +18,22 @@ from typing import Any
 
 from momantu_bt.formats.cache import cache_subfolder
 from momantu_bt.formats.files import write_whole
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import ObjectClass, plain
+from momantu_bt.tags import TagBundle, TagPlate
 from momantu_bt.world import Overhang, Site, Surface
 
-FIELDS = ("name", "start", "start_sigma", "places", "surfaces", "objects", "services", "area")
+FIELDS = (
+    "name",
+    "start",
+    "start_sigma",
+    "places",
+    "surfaces",
+    "objects",
+    "tags",
+    "services",
+    "area",
+)
 """Fields of a site that are cached: all but maps, which depend on the robot."""
 
 
@@ -74,9 +85,19 @@ def _read(data: dict[str, Any]) -> Site:
         places=MappingProxyType({place: Pose2D(**at) for place, at in data["places"].items()}),
         surfaces=MappingProxyType(surfaces),
         objects=MappingProxyType({o: ObjectClass(**e) for o, e in data["objects"].items()}),
+        tags=MappingProxyType({name: _bundle(each) for name, each in data["tags"].items()}),
         services=MappingProxyType(data["services"]),
         area=None if data["area"] is None else tuple(data["area"]),
     )
+
+
+def _bundle(entry: dict[str, Any]) -> TagBundle:
+    place = entry["map_from_bundle"]
+    plates = (
+        TagPlate(each["tag_id"], each["edge"], Transform(**each["bundle_from_tag"]))
+        for each in entry["plates"]
+    )
+    return TagBundle(entry["family"], tuple(plates), None if place is None else Transform(**place))
 
 
 def _overhang(entry: dict[str, Any]) -> Overhang:

@@ -14,6 +14,7 @@ from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap
 from momantu_worlds.scenes.site.coverage import Column
 from momantu_worlds.scenes.site.floor_plan import area_of, known_parts
+from momantu_worlds.scenes.site.tags import told_tags
 
 SIGMAS = 2.0
 """The largest error of the rough start pose, in standard deviations."""
@@ -44,6 +45,7 @@ def site_of(world: WorldFile, start: Pose2D) -> Site:
         objects=MappingProxyType(
             {name: ObjectClass(**sizes.model_dump()) for name, sizes in notes.objects.items()}
         ),
+        tags=MappingProxyType(told_tags(world)),
         services=MappingProxyType(notes.services),
         area=None if world.site.map is not None else area_of(world),
     )

@@ -1,0 +1,1 @@
+"""AprilTags: found in pictures, and where they are, one by one or as bundles."""
