@@ -52,6 +52,7 @@ def show_one(
             "places": plain(site.places),
             "surfaces": plain(site.surfaces),
             "objects": plain(site.objects),
+            "tags": plain(site.tags),
             "about": {section: dict(lines) for section, lines in more.items()},
         }
         typer.echo(json.dumps(about, indent=2))
@@ -69,6 +70,12 @@ def show_one(
     for object_name, told in site.objects.items():
         sizes = ", ".join(f"{k} {v:g} m" for k, v in plain(told).items() if isinstance(v, float))
         typer.echo(f"  {object_name}: {told.category}{', ' if sizes else ''}{sizes}")
+    if site.tags:
+        typer.echo("\nTags that the robot is told of")
+    for tag_name, bundle in site.tags.items():
+        ids = ", ".join(map(str, bundle.ids[:8])) + (", …" if len(bundle.ids) > 8 else "")
+        where = "" if bundle.map_from_bundle is None else ", its place too"
+        typer.echo(f"  {tag_name}: {bundle.family} {ids}{where}")
     for section, lines in more.items():
         typer.echo(f"\n{section}")
         for what, words in lines.items():

@@ -66,8 +66,8 @@ class _Bundle(_Part):
 
 
 class _File(_Part):
-    standalone_tags: tuple[_Standalone, ...] | None = None
-    tag_bundles: tuple[_Bundle, ...] | None = None
+    standalone_tags: tuple[_Standalone, ...] = ()
+    tag_bundles: tuple[_Bundle, ...] = ()
     tag_family: TagFamily | None = None
     tag_threads: Any = None
     tag_decimate: Any = None
@@ -98,12 +98,12 @@ def read_tags(path: Path, family: TagFamily = USUAL_FAMILY) -> dict[str, TagBund
 
 
 def _alone(file: _File) -> Iterator[tuple[int, str, _Standalone]]:
-    for number, tag in enumerate(file.standalone_tags or ()):
+    for number, tag in enumerate(file.standalone_tags):
         yield number, tag.name or f"tag_{tag.id}", tag
 
 
 def _bundles(file: _File) -> Iterator[tuple[int, str, _Bundle]]:
-    for number, bundle in enumerate(file.tag_bundles or ()):
+    for number, bundle in enumerate(file.tag_bundles):
         yield number, bundle.name or f"bundle_{number}", bundle
 
 

@@ -70,5 +70,5 @@ def test_the_table_has_every_code() -> None:
 
 
 def test_every_code_that_can_be_reported_has_a_page() -> None:
-    names = {"unknown-place", "unknown-surface", "unknown-named-pose"}
+    names = {"unknown-place", "unknown-surface", "unknown-tag", "unknown-named-pose"}
     assert _reported() | names == set(codes())

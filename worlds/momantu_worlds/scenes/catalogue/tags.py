@@ -18,6 +18,8 @@ _TABLE = Path(__file__).with_name("tag_families.json")
 """Written by `setup/tag_families.py`."""
 WHITE, BLACK = 235, 20
 """Grey levels of the print."""
+MOST_IDS = 587
+"""The table has so many ids of a family, or all."""
 CELL = 32
 """Pixels along a cell of a picture."""
 

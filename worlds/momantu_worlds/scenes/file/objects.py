@@ -11,7 +11,7 @@ from momantu_bt.descriptions.quantities import Angle, Mass, Size
 from momantu_bt.geometry import Transform
 from momantu_bt.tags import USUAL_FAMILY, TagFamily, TagPlate
 from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind
-from momantu_worlds.scenes.catalogue.tags import known_ids, picture_edge
+from momantu_worlds.scenes.catalogue.tags import MOST_IDS, known_ids, picture_edge
 from momantu_worlds.scenes.file.values import (
     Friction,
     Name,
@@ -82,7 +82,7 @@ class Item(ObjectNote):
     name: Name
 
 
-TagId: TypeAlias = Annotated[int, Field(ge=0)]
+TagId: TypeAlias = Annotated[int, Field(ge=0, lt=MOST_IDS)]
 MOST_PLATES = 400
 """Most tags of a bundle."""
 
