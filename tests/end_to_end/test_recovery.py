@@ -37,6 +37,7 @@ OUTPUTS: dict[str, Any] = {
     "found": DetectedObject("can", POSE, (0.07, 0.07, 0.13), "cylinder", 1.0, 0.7),
     "tag_pose": POSE,
     "tag_sigma": 0.001,
+    "tag_covariance": (0.0,) * 36,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
 }

@@ -14,7 +14,7 @@ from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array
 from momantu_worlds.checking.legible import LEAST_CELL, cell_widths, least_light, light_on
 from momantu_worlds.checking.scenario import Scenario
-from momantu_worlds.scenes.catalogue.tags import CELL
+from momantu_worlds.scenes.catalogue.tags import cells_along
 from momantu_worlds.scenes.geometry.bodies import Body, Part, Picture
 
 RINGS = (0.4, 0.7, 1.0, 1.4, 1.9, 2.5)
@@ -135,7 +135,7 @@ def _points(tag: Body, part: Part) -> tuple[Array, Array, float]:
     map_from_paper = tag.map_from_body @ part.body_from_part
     flat = INSIDE * GRID * part.geometry.size
     own = np.column_stack([flat, np.full(len(flat), PAPER)])
-    cell = min(part.geometry.size) * CELL / part.geometry.pixels.shape[0]
+    cell = min(part.geometry.size) / cells_along(part.geometry.pixels)
     return map_from_paper.apply(own), map_from_paper.rotation[:, 2], cell
 
 

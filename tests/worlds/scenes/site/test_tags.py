@@ -18,7 +18,7 @@ rooms: {living: {corner: [0, 0], size: [6, 5]}}
 tables: {desk: {kind: desk, at: [2, 4.4, -90 deg], size: [0.8, 1.5, 0.72], sides: [0 deg]}}
 tags:
   mark: {id: 1, edge: 150 mm, on: desk, at: [0.05, 0.0]}
-  wall: {grid: {columns: 3, rows: 2, gap: 20 mm, first: 10}, edge: 60 mm, hung: [5.9, 2, 1, 180 deg]}
+  wall: {grid: {columns: 3, rows: 2, gap: 20 mm, first: 10}, edge: 6 cm, hung: [5.9, 2, 1, 180 deg]}
   odd:
     family: tag25h9
     bundle: [{id: 3, at: [0, 0, 0]}, {id: 4, at: [0.1, 0, 0.02, 0, 20 deg, 0], edge: 4 cm}]

@@ -100,6 +100,12 @@ def shown_by(pixels: NDArray[np.uint8]) -> tuple[TagFamily, int] | None:
     return _known().get(cells.tobytes())
 
 
+def cells_along(pixels: NDArray[np.uint8]) -> int:
+    """How many cells a tag's picture has along its edge; of other pictures the usual family's."""
+    shown = shown_by(pixels)
+    return _families()[USUAL_FAMILY if shown is None else shown[0]].cells
+
+
 @cache
 def _known() -> Mapping[bytes, tuple[TagFamily, int]]:
     return MappingProxyType(
