@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import ObjectClass
-from momantu_bt.tags import TagBundle
+from momantu_bt.tags import USUAL_FAMILY, TagBundle, TagPlate
 from momantu_bt.testing.robot import ScriptedRobot
 from momantu_bt.world import TICK, Site, Surface, TreeLine, Verdict, Video, View
+
+DOCK = TagBundle(
+    USUAL_FAMILY,
+    (TagPlate(1, 0.15),),
+    Transform.from_rpy((3.0, 0.0, 0.5), (math.pi / 2, 0.0, -math.pi / 2)),
+)
+"""A tag that hangs behind the first table of `scripted_site`."""
 
 
 def scripted_site(
@@ -21,7 +29,7 @@ def scripted_site(
     start: Pose2D | None = None,
     tags: Mapping[str, TagBundle] | None = None,
 ) -> Site:
-    """A site with two tables 0.7 m high at (2, 0) and (-2, 0), unless other surfaces are given."""
+    """A site with two tables at (2, 0) and (-2, 0) and a tag, unless others are given."""
     tables = {
         "table_a": Surface(Pose2D(2.0, 0.0, 0.0), (0.8, 1.2), 0.7, (3.141592653589793, 0.0)),
         "table_b": Surface(Pose2D(-2.0, 0.0, 0.0), (0.8, 1.2), 0.5, (0.0, 3.141592653589793)),
@@ -32,7 +40,7 @@ def scripted_site(
         start=start or Pose2D(0.0, 0.0, 0.0),
         places=places or {"start": Pose2D(0.0, 0.0, 0.0)},
         surfaces=tables if surfaces is None else surfaces,
-        tags=tags or {},
+        tags={"dock": DOCK} if tags is None else tags,
         objects={"can": ObjectClass("can", diameter=0.07, height=0.13)},
     )
 
