@@ -28,6 +28,8 @@ VERSION = 1
 """Version of the files."""
 MILLIMETRES = 1000.0
 """Depth values of a file per metre."""
+_DAMAGED = (OSError, ValueError, KeyError, TypeError, AttributeError, IndexError, SyntaxError)
+"""What reading a damaged file raises; Pillow calls a broken chunk of a PNG a wrong syntax."""
 QUALITY = 92
 """JPEG quality of the colours."""
 
@@ -132,7 +134,7 @@ def read(folder: Path, seed: int) -> Labelled:
             numbers,
             things,
         )
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except _DAMAGED as error:
         raise LabelledError(
             f"{stem}.json and its pictures cannot be read: {error}; remove them and render seed "
             f"{seed} again"

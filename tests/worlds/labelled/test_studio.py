@@ -82,7 +82,7 @@ def test_files_hold_the_whole_picture(pictures: dict[int, Labelled], tmp_path: P
     assert np.array_equal(back.image.intrinsics, made.image.intrinsics)
 
 
-@pytest.mark.parametrize("damage", ["missing", "version", "cut", "label"])
+@pytest.mark.parametrize("damage", ["missing", "version", "cut", "chunk", "list", "label"])
 def test_damaged_files_are_told(damage: str, pictures: dict[int, Labelled], tmp_path: Path) -> None:
     labelled.write(tmp_path, pictures[0])
     text = tmp_path / "000000.json"
@@ -93,6 +93,11 @@ def test_damaged_files_are_told(damage: str, pictures: dict[int, Labelled], tmp_
     elif damage == "cut":
         depth = tmp_path / "000000.depth.png"
         depth.write_bytes(depth.read_bytes()[:2000])
+    elif damage == "chunk":
+        things = tmp_path / "000000.things.png"
+        things.write_bytes(things.read_bytes().replace(b"IDAT", b"\xaf\xbea2", 1))
+    elif damage == "list":
+        text.write_text("[]")
     else:
         text.write_text(text.read_text().replace('"number"', '"nummer"'))
     with pytest.raises(LabelledError, match="render seed 0 again"):
