@@ -12,6 +12,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, GripperCommand, ObjectClass
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
+from momantu_bt.service import HeldObject
 from momantu_bt.skill import Compute, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
@@ -166,6 +167,8 @@ class Pick(Skill):
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         squeezed = max(0.0, plan.grasp.width - SQUEEZE)
+        expected = HeldObject(self.object, self._grasp_from_object(arm, plan))
+        self.planning_scene.holding.expect(expected, arm.state.gripper_width)
         width = yield from move_gripper(
             arm.robot, self.clock, squeezed, arm.force, hand.close_time, "closing"
         )
@@ -235,7 +238,7 @@ class Pick(Skill):
         yield from self._gripper_or_stuck(
             open_hand(arm.robot, self.clock, effector.max_width, arm.force, hand.close_time)
         )
-        self.planning_scene.touched()
+        self.planning_scene.released()
 
     def _gripper_or_stuck(self, opening: Run) -> Run:
         """Move the gripper; report a gripper that does not move as ARM_STUCK."""

@@ -43,6 +43,28 @@ def test_the_can_is_lifted_and_known_to_be_held(
     assert scene.last_contact > 0.0
 
 
+def test_a_grasp_that_is_cut_off_while_the_fingers_close_is_known(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
+    robot, since = tabletop(), list[float]()
+
+    def note(session: Any, world: Any) -> None:
+        if robot.hand_from_can is not None:
+            since.append(robot.time)
+
+    assert pick(robot, scene_of(robot), robot.detected(), on_tick=note).status == "SUCCESS"
+    robot = tabletop()
+    scene = scene_of(robot)
+    result = pick(robot, scene, robot.detected(), max_time=since[0])
+    assert result.status == "HALTED"
+    for _ in range(10):
+        robot.advance(0.05)
+        scene.update(robot, robot.time)
+    assert scene.held is not None
+    believed = robot.odom_from_hand @ scene.held.grasp_from_object
+    assert np.linalg.norm(believed.position - robot.can.position) < 0.01
+
+
 @pytest.mark.parametrize("can", [(0.65, 0.2), (0.9, -0.2)])
 def test_the_same_seed_moves_the_same_way(
     tabletop: type[Tabletop], scene_of: SceneOf, can: Any
@@ -117,6 +139,23 @@ def test_out_of_reach_is_no_grasp(tabletop: type[Tabletop], scene_of: SceneOf) -
     result = pick(robot, scene_of(robot), robot.detected())
     assert result.code == "NO_GRASP"
     assert "grasps" in result.failure.message
+
+
+def test_no_grasp_says_why_each_side_fell_out(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
+    robot = tabletop()
+    size = (0.07, 0.11, 0.14)
+    seen = robot.detected()
+    thing = DetectedObject("packet", seen.pose, size, "box", 0.9, seen.support_height)
+    robot.others = [Block((0.3, 0.3, 0.3), (0.75, 0.0, robot.table + 0.35))]
+    robot.others += [Block((0.3, 0.06, 0.3), (0.75, y, robot.table + 0.15)) for y in (-0.12, 0.12)]
+    result = pick(robot, scene_of(robot), thing)
+    assert result.code == "NO_GRASP"
+    sides = result.failure.data["sides"]
+    assert set(sides) == {"front", "back", "left", "right", "above"}
+    assert "110 mm wide" in sides["front"]
+    assert "the hand opens to 100 mm" in sides["front"]
+    assert "meets what pictures show" in sides["left"] + sides["right"]
+    assert all(f"{side}: {reason}" in result.failure.message for side, reason in sides.items())
 
 
 def test_what_is_too_wide_is_no_grasp(tabletop: type[Tabletop], scene_of: SceneOf) -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
+from momantu_skills.manipulation.hand.grasps import THICKEST, THINNEST, Grasp, grasps_for
 from momantu_skills.manipulation.hand.reaching import plan_pick
 from momantu_skills.manipulation.hand.rims import seen_hollow, wall_pieces
 from momantu_skills.manipulation.model.arm_model import arm_model
@@ -65,7 +65,7 @@ def test_a_plate_has_no_rim_for_the_fingers() -> None:
 @given(st.floats(0.0, 0.05))
 def test_closed_fingers_hold_no_wall(width: float) -> None:
     rim = Grasp(Transform(), 0.010, 0.0, rim=True)
-    assert rim.fits(width, 0.012) is (0.0025 <= width <= 0.030)
+    assert rim.fits(width, 0.012) is (THINNEST <= width <= THICKEST)
     assert Grasp(Transform(), 0.010, 0.0).fits(width, 0.012) is (width <= 0.022)
 
 

@@ -116,6 +116,30 @@ def test_what_was_released_is_not_held_again() -> None:
     assert belief.held is None
 
 
+def closing() -> Holding:
+    belief = Holding(CONFIG)
+    belief.expect(HELD, 0.095)
+    for i in range(CONFIG.doubt):
+        belief.judge(state(0.09 - 0.01 * i, 0.0, 1.0 + 0.1 * i))
+    assert belief.held is None
+    return belief
+
+
+def test_what_the_fingers_close_on_is_held_once_they_press_on_it() -> None:
+    belief = closing()
+    press(belief, 0.07)
+    assert belief.held is HELD
+
+
+def test_what_the_fingers_missed_is_not_held() -> None:
+    belief = closing()
+    press(belief, 0.001)
+    assert belief.held is None
+    belief.release(20.0)
+    press(belief, 0.07)
+    assert belief.held is None
+
+
 def test_a_bounce_does_not() -> None:
     belief = holding()
     for i in range(40):

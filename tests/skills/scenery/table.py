@@ -8,7 +8,7 @@ import numpy as np
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_worlds.robots import fetch
 
-from momantu_bt.geometry import Pose, Transform
+from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import (
     CameraImage,
     DetectedObject,
@@ -69,7 +69,7 @@ class Tabletop(ScriptedRobot):
         super().advance(seconds)
         if self.can is None:
             return
-        inside = self.odom_from_hand.inverse().apply(self.can.position)
+        inside = self.odom_from_hand.inverse().apply(self._nearest_of_axis())
         between = bool((np.abs(inside) < (0.02, 0.02, 0.07)).all())
         self.object_width = 0.07 if between or self.hand_from_can is not None else None
         if self.hand_from_can is None and between and self.gripper_effort > 0.0:
@@ -82,6 +82,12 @@ class Tabletop(ScriptedRobot):
                 self._drop()
             else:
                 self._follow_hand()
+
+    def _nearest_of_axis(self) -> Array:
+        """The point (3,) of the can's axis that is nearest to the hand, odom."""
+        assert self.can is not None
+        along = float(self.can.inverse().apply(self.odom_from_hand.position)[2])
+        return self.can.apply((0.0, 0.0, min(max(along, -0.06), 0.06)))
 
     def _follow_hand(self) -> None:
         assert self.hand_from_can is not None

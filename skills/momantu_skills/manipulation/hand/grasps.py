@@ -52,10 +52,12 @@ RIM_WALL = 0.010
 """Assumed thickness of a wall between the pads, m: a bowl's is 3 to 8 mm and leans."""
 THINNEST = 0.0025
 """Least opening at which a wall is between the pads, m: twice what a closed gripper may show."""
-THICKEST = 0.030
-"""Largest such opening, m: a wall of 8 mm that leans by 30 degrees, over the depth of the tips."""
 RIM_DEPTH = 0.035
 """Depth of the fingers' tips below a rim, m: more than half of a usual pad."""
+THICK_WALL, LEANING = 0.008, math.radians(30)
+"""Thickness, m, and lean, rad, of the thickest wall that is expected."""
+THICKEST = THICK_WALL / math.cos(LEANING) + RIM_DEPTH * math.tan(LEANING)
+"""Largest opening at which a wall is between the pads, m: 29 mm, with the wall along the tips."""
 RIM_LEAST = 0.020
 """Least such depth for a firm hold, m."""
 RIM_FLOOR = 0.025
@@ -101,7 +103,7 @@ def grasps_for(
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
-    fitting = [a for a in _approaches(thing) if a[0] <= hand.max_width - opening]
+    fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
     for width, direction, top in fitting:
         if top:
             found += _from_above(thing, hand, fingers, direction, width)
@@ -113,8 +115,8 @@ def grasps_for(
     return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
 
 
-def _approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
-    """(width between pads, direction of the fingers in the object's xy plane, from above)."""
+def approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
+    """(width between pads in m, direction of the fingers in the object's xy plane, from above)."""
     if thing.shape == "cylinder":
         width = max(thing.size[0], thing.size[1])
         for i in range(AZIMUTHS):

@@ -16,6 +16,8 @@ from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
 from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
+from momantu_skills.manipulation.hand.sides import Sides, sentence
+from momantu_skills.manipulation.hand.underside import low_penalty
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
 from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_skills.manipulation.scene.scene import Cut
@@ -104,7 +106,8 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     then.
 
     Raises:
-        Failure: NO_GRASP, with the number of grasps that failed at each step.
+        Failure: NO_GRASP, with the number of postures that failed at each step, and why each side
+            of the object fell out.
     """
     grasps = _fitting(arm, thing)
     postures = list(_postures(arm, thing, grasps))[:TESTED]
@@ -113,9 +116,11 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
         found = list(islice(filter(None, (check(*posture) for posture in postures)), ENOUGH))
         if found:
             return found
+    sides = check.sides.told(grasps)
     raise Failure(
         "NO_GRASP",
-        f"none of {len(grasps)} grasps can be approached, held and lifted: {check.summary()}",
+        f"none of {len(grasps)} grasps can be approached, held and lifted: {sentence(sides)}",
+        sides=sides,
         **check.lost,
     )
 
@@ -146,6 +151,7 @@ def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
         f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
         f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
         f"{effector.max_width * 1000:.0f} mm{rim}",
+        sides=Sides(arm, thing).told(()),
     )
 
 
@@ -172,7 +178,8 @@ def _postures(
         costs += grasp.penalty + arm.carry_penalty(grasp.object_from_grasp.inverse())
         costs += arm.blind_penalty(grasp.object_from_grasp)
         order = np.argsort(costs, kind="stable")[:POSTURES]
-        ranked += [(float(costs[j]), i, solved[j]) for j in order]
+        low = low_penalty(arm, thing, solved[order[0]]) if len(order) else 0.0
+        ranked += [(float(costs[j]) + low, i, solved[j]) for j in order]
     ranked.sort(key=lambda item: (item[0], item[1]))
     for cost, i, q in ranked:
         yield grasps[i], q, cost
@@ -202,6 +209,7 @@ def _upright_postures(
             own = Grasp(place, grasp.width, grasp.penalty)
             cost = float(np.max(np.abs(q - start) / group.velocity)) + grasp.penalty
             cost += arm.carry_penalty(place.inverse()) + arm.blind_penalty(place)
+            cost += low_penalty(arm, thing, q)
             ranked.append((cost, i, own, q))
     ranked.sort(key=lambda item: item[:2])
     for cost, _, own, q in ranked:
@@ -221,23 +229,24 @@ class _Check:
         self._around = _around(arm, self._state, thing, solids)
         self._walls = _around(arm, self._state, thing, wall_pieces(thing))
         self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
+        self.sides = Sides(arm, thing)
 
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
         arm, around = self._arm, self._walls if grasp.rim else self._around
         if not (self._open.free(q) and around.free(q)):
-            self.lost["hand collides"] += 1
+            self._lost("hand collides", grasp, q, self._open, around)
             return None
         base_from_tip = arm.group.tip_pose(q)
         back = base_from_tip @ Transform((-arm.hand.approach, 0.0, 0.0))
         approach = arm.line(q, back)
         if approach is None or not (self._open.path_free(approach) and around.path_free(approach)):
-            self.lost["approach"] += 1
+            self._lost("approach", grasp, q)
             return None
         x, y, z = base_from_tip.position
         above = Transform((x, y, z + self._lift), base_from_tip.quaternion)
         lift = arm.line(q, above)
         if lift is None or not self._carrying(grasp).path_free(lift):
-            self.lost["lift"] += 1
+            self._lost("lift", grasp, q)
             return None
         return Reach(grasp, approach[::-1], lift, cost, self._cut)
 
@@ -252,10 +261,9 @@ class _Check:
             cut=self._cut,
         )
 
-    def summary(self) -> str:
-        """The number of postures that failed at each step, for a message."""
-        counts = ", ".join(f"{n} at {where}" for where, n in self.lost.items() if n)
-        return counts or "no posture of the arm reaches any of them"
+    def _lost(self, step: str, grasp: Grasp, q: Array, *worlds: CollisionWorld) -> None:
+        self.lost[step] += 1
+        self.sides.lost(grasp, step, q, *worlds)
 
 
 def _around(

@@ -34,7 +34,8 @@ class Holding:
     opening, and is held all the same: only fingers that press on nothing, or are shut, have lost
     it. After `doubt` successive updates of that kind it counts as lost, and the time counts as a
     contact, because the object has touched something. Where the same fingers press on something
-    again before they have opened, the object counts as held again.
+    again before they have opened, the object counts as held again. So does one that they close on,
+    whether or not the skill that closes them comes to its end.
     """
 
     def __init__(self, config: SceneConfig) -> None:
@@ -59,6 +60,10 @@ class Holding:
         """Report a grasp at an opening of `width` m."""
         self.held, self._width, self._doubts, self._lost = held, width, 0, None
         self.last_contact = now
+
+    def expect(self, held: HeldObject, width: float) -> None:
+        """Report that the fingers begin to close on an object, from an opening of `width` m."""
+        self.held, self._width, self._doubts, self._lost = None, width, 0, held
 
     def touched(self, now: float) -> None:
         """Report that the hand has touched or released something."""
