@@ -25,7 +25,7 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
-    from momantu_skills.manipulation.hand import verification
+    from momantu_skills.manipulation.hand import rims, verification
     from momantu_skills.manipulation.model import hulls
     from momantu_skills.manipulation.model.collision import Obstacle
 
@@ -199,13 +199,13 @@ class Place(Skill):
     def _judged(self, arm: Arm, pose: Transform, held: HeldObject, before: Array) -> str:
         """Whether the object is "upright", "toppled" or "gone"; remember where it stands."""
         bottom = float(pose.position[2] - held.object.size[2] / 2)
-        seen = verification.standing(arm.scene.points, pose, held.object, bottom)
-        found = verification.beside(
-            verification.unseen_before(arm.scene.points, before), pose, held.object, bottom
-        )
-        if found is not None and float(np.linalg.norm(found.position - pose.position)) > BESIDE:
-            self._spot, seen = found, "upright"
-        return seen
+        new = verification.unseen_before(arm.scene.points, before)
+        found = verification.beside(new, pose, held.object, bottom, rims.held_by_rim(held))
+        if found is None:
+            return verification.standing(arm.scene.points, pose, held.object, bottom)
+        if float(np.linalg.norm(found.position - pose.position)) > BESIDE:
+            self._spot = found
+        return "upright"
 
     def _camera_is_apart(self, arm: Arm) -> bool:
         return arm.robot.description.resolve_use(CAMERA_CARRIER) != ARM

@@ -16,6 +16,7 @@ from momantu_skills.manipulation.hand.verification import (
     standing,
     unseen_before,
 )
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose, Transform
 from momantu_bt.messages import DetectedObject
@@ -136,3 +137,54 @@ def test_a_neighbour_that_was_there_before_does_not_hide_what_came() -> None:
     assert beside(new, spot, CAN, TABLE) is not None
     assert beside(unseen_before(neighbour, neighbour), spot, CAN, TABLE) is None
     assert INSIDE < KNOWN
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.sampled_from([(0.12, 0.05), (0.14, 0.06), (0.16, 0.065), (0.18, 0.07)]),
+    st.floats(0.0, 0.9),
+    TURNS,
+    st.integers(0, 99),
+)
+def test_a_bowl_is_found_by_its_rim(
+    measures: tuple[float, float], share: float, way: float, seed: int
+) -> None:
+    across, height = measures
+    size = (across, across, height)
+    bowl = DetectedObject("bowl", CAN.pose, size, "cylinder", 1, TABLE)
+    spot = spot_of(bowl)
+    off = share * across / 2
+    truth = spot @ Transform((off * math.cos(way), off * math.sin(way), 0.0))
+    points = noisy(inside_and_out(bowl, truth), seed)
+    found = beside(points, spot, bowl, TABLE, hollow=True)
+    assert found is not None
+    assert np.linalg.norm(found.position - truth.position) < 0.01
+    assert beside(points[rim_side(points, truth)], spot, bowl, TABLE, hollow=True) is None
+
+
+def test_a_bowl_that_leans_on_something_does_not_stand() -> None:
+    size = (0.18, 0.18, 0.07)
+    bowl = DetectedObject("bowl", CAN.pose, size, "cylinder", 1, TABLE)
+    spot = spot_of(bowl)
+    tilt = Transform((0.0, 0.0, 0.03), (math.cos(0.2), 0.0, math.sin(0.2), 0.0))
+    points = inside_and_out(bowl, spot @ tilt)
+    assert beside(points, spot, bowl, TABLE, hollow=True) is None
+
+
+def inside_and_out(bowl: DetectedObject, pose: Transform) -> Array:
+    """Points of a bowl that a camera above sees: its inside, and the near half of its outside."""
+    turn = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    rows = []
+    for level in np.linspace(0.0, 1.0, 12):
+        radius = (0.45 + 0.55 * level) * bowl.size[0] / 2
+        rise = np.full((len(turn), 1), (level - 0.5) * bowl.size[2])
+        rows.append(np.hstack([(radius - 0.004) * circle, rise]))
+        rows.append(np.hstack([radius * circle, rise])[circle[:, 0] < 0.0])
+    return pose.apply(np.vstack(rows))
+
+
+def rim_side(points: Array, pose: Transform) -> NDArray[np.bool_]:
+    """Which points lie on one third of a bowl: what a hand leaves of it that is in the way."""
+    local = pose.inverse().apply(points)
+    return np.asarray(np.abs(np.arctan2(local[:, 1], local[:, 0])) < np.pi / 3)

@@ -9,6 +9,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
+from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.hand.grasps import ROOM, Grasp
 from momantu_skills.manipulation.scene.surroundings import SeenSpace
 
@@ -20,9 +21,8 @@ STEP = 0.006
 """Distance between points that are looked at inside an object, m."""
 SLACK = 0.008
 """How far a picture must show something behind a point for it to be free, m: three sigma of the
-depth noise at 1.6 m."""
-DOUBT = 0.0
-"""Share of the depth that is added to it: both lie side by side in one picture."""
+depth noise at 1.6 m. A camera whose depth is wrong by a share is wrong alike for both: they lie
+side by side in one picture."""
 SEEN = 0.9
 """Least share of the points in the finger's place that pictures showed to be free."""
 NEAR = 0.02
@@ -43,7 +43,7 @@ def seen_hollow(
     points = _inner_place(thing, grasp, fingers)
     if not len(points):
         return True
-    free = space.free(thing.pose.transform.apply(points), SLACK, DOUBT)
+    free = space.free(thing.pose.transform.apply(points), SLACK)
     return float(free.mean()) >= SEEN
 
 
@@ -53,6 +53,12 @@ def seen_rim(points: Array, thing: DetectedObject, grasp: Grasp) -> bool:
     place[2] = thing.size[2] / 2
     away = np.linalg.norm(points - thing.pose.transform.apply(place), axis=1)
     return int((away < NEAR).sum()) >= FEW
+
+
+def held_by_rim(held: HeldObject) -> bool:
+    """Whether the fingers hold an object at its wall: their middle is far from its axis."""
+    across = float(held.grasp_from_object.position[1])
+    return abs(across) > min(held.object.size[:2]) / 4
 
 
 def wall_pieces(thing: DetectedObject) -> list[Array]:

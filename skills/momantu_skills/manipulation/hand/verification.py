@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from momantu_bt.geometry import Array, Transform
@@ -32,6 +33,12 @@ MISFIT = 0.006
 """Largest mean distance of the points from an outline, m."""
 FEW = 8
 """Points that prove a top if the hand hides most of it."""
+LEAN = 0.015
+"""How far the wall of a hollow thing may lean inwards within `TOP` of its rim, m: one of 45
+degrees, less what noise hides."""
+SECTORS, ROUND_ABOUT = 12, 7
+"""Sectors around a hollow thing, and in how many of them its rim must be seen: more than half of
+it, since less does not tell its middle."""
 KNOWN = 0.03
 """Distance from earlier points within which nothing counts as new, m: one and a half cells."""
 
@@ -83,13 +90,14 @@ def unseen_before(points: Array, before: Array) -> Array:
 
 
 def beside(
-    points: Array, pose: Transform, thing: DetectedObject, support: float
+    points: Array, pose: Transform, thing: DetectedObject, support: float, hollow: bool = False
 ) -> Transform | None:
     """Where points (n, 3) show the object upright next to its spot, or None.
 
     The object may slip while the fingers close and open. pose: `odom_from_object` at the spot. The
     spot was free, so no other object has its centre within the outline there. The match must have
-    the object's height and outline and must stand alone.
+    the object's height and outline and must stand alone. hollow: the object is open at the top and
+    its walls may lean, so that its rim alone has the outline.
     """
     half = np.array(thing.size) / 2
     local, rise = pose.inverse().apply(points)[:, :2], points[:, 2] - support
@@ -98,20 +106,51 @@ def beside(
     around &= rise > ABOVE
     local, rise = local[around], rise[around]
     body = rise < thing.size[2] + TOP
-    if body.sum() < SOME:
+    top = rise[body] > thing.size[2] - TOP
+    if body.sum() < SOME or top.sum() < FEW:
         return None
     shifts = _shifts(reach)
     out = _outside(local[body] - shifts[:, None], half[:2], thing.shape)
-    side = rise[body] < thing.size[2] - ABOVE
-    misfit = np.minimum(np.where(side, np.abs(out), np.maximum(out, 0.0)), CLOSE)
-    best = int(np.argmin(misfit.mean(axis=1)))
+    if hollow:
+        fit = _ring_misfit(out, top)
+    else:
+        side = rise[body] < thing.size[2] - ABOVE
+        fit = _solid_misfit(out, side)
+    best = int(np.argmin(fit.mean(axis=1)))
     own, close = out[best] <= INSIDE, out[best] < CLOSE
     higher = _outside(local[~body] - shifts[best], half[:2], thing.shape) <= INSIDE
-    seen = own.sum() >= SOME and (own & (rise[body] > thing.size[2] - TOP)).sum() >= FEW
+    seen = own.sum() >= SOME and (own & top).sum() >= FEW
     alone = (close & ~own).sum() <= STRAY * own.sum() and higher.sum() < FEW
-    if not (seen and alone and misfit[best][close].mean() < MISFIT):
+    counted = top if hollow else close
+    if not (seen and alone and fit[best][counted].mean() < MISFIT):
+        return None
+    if hollow and not _seen_about(local[body][own & top] - shifts[best]):
         return None
     return pose @ Transform((*shifts[best], 0.0))
+
+
+def _solid_misfit(out: Array, side: NDArray[np.bool_]) -> Array:
+    """Distance (k, n) of points from a solid with upright sides, m.
+
+    out: (k, n) outside its outline. side: which points (n,) are below its top.
+    """
+    return np.minimum(np.where(side, np.abs(out), np.maximum(out, 0.0)), CLOSE)
+
+
+def _ring_misfit(out: Array, top: NDArray[np.bool_]) -> Array:
+    """Distance (k, n) of points from a hollow thing whose rim's wall leans evenly, m.
+
+    Points below the rim are anywhere inside the outline. See `_solid_misfit`; top: which points
+    (n,) show the rim.
+    """
+    near = np.clip(np.median(out[:, top], axis=1), -LEAN, 0.0)[:, None]
+    return np.minimum(np.where(top, np.abs(out - near), np.maximum(out, 0.0)), CLOSE)
+
+
+def _seen_about(rim: Array) -> bool:
+    """Whether points (n, 2) of a rim lie on most sides of the middle."""
+    turns = np.arctan2(rim[:, 1], rim[:, 0]) / (2 * np.pi) + 0.5
+    return len(np.unique((turns * SECTORS).astype(np.int64) % SECTORS)) >= ROUND_ABOUT
 
 
 def _shifts(reach: float) -> Array:

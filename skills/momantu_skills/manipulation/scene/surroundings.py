@@ -332,7 +332,7 @@ class SeenSpace:
             return np.ones(len(points), dtype=np.bool_)
         return self._views[-1].hides(points, slack)
 
-    def free(self, points: Array, slack: float, doubt: float) -> NDArray[np.bool_]:
+    def free(self, points: Array, slack: float, doubt: float = 0.0) -> NDArray[np.bool_]:
         """Which points (n, 3) in odom a picture has shown to be free: (n,).
 
         What the picture shows must lie behind them by `slack` m and by the share `doubt` of their
