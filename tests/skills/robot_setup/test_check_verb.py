@@ -12,7 +12,7 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
 from momantu_skills.robot_setup.check.robot import check_robot
 from momantu_skills.robot_setup.check_verb import check
-from momantu_skills.robot_setup.find.proposal import Proposal
+from momantu_skills.robot_setup.find.proposal import Proposal, propose
 from momantu_skills.robot_setup.write.writer import robot_file
 from momantu_worlds.robots import fetch
 from typer import Typer
@@ -175,6 +175,20 @@ def test_a_grasp_frame_beside_the_pads(wrong: Wrong, rolling_proposal: Proposal)
     *_, ahead = place.position
     found = wrong((f"{ahead:.4f}".rstrip("0") + "], rpy: [0, -1.5708", "0.5], rpy: [0, -1.5708"))
     assert "no-pads-at-grasp" in {finding.code for finding in found}
+
+
+def test_shapes_that_no_one_sees_between_the_fingers(rolling_urdf: Path, tmp_path: Path) -> None:
+    guard = '<link name="guard"><collision><origin xyz="0 0 0.08"/><geometry>'
+    guard += '<box size="0.14 0.08 0.14"/></geometry></collision></link>'
+    guard += '<joint name="guarded" type="fixed"><parent link="palm"/><child link="guard"/></joint>'
+    text = rolling_urdf.read_text().replace("</robot>", f"{guard}</robot>")
+    (tmp_path / "guarded.urdf").write_text(text)
+    proposal = propose(tmp_path / "guarded.urdf", samples=20)
+    (tmp_path / "robot.yaml").write_text(robot_file(proposal, tmp_path))
+    found = [f for f in check_robot(read_robot(tmp_path)) if f.code == "hand-is-filled"]
+    assert len(found) == 1
+    assert "nothing can be grasped: guard" in found[0].message
+    assert found[0].severity.label == "error"
 
 
 def test_a_pose_that_leaves_a_joint_open(wrong: Wrong) -> None:

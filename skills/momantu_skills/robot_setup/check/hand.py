@@ -9,6 +9,7 @@ import numpy as np
 
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
+from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_skills.robot_setup.find.base import Stand
@@ -54,6 +55,7 @@ def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtK
     # the hull around a palm with a fixed jaw fills the hand: nothing is measured against it
     if moves[:, 1].min() < 0 < moves[:, 1].max():
         yield from _outwards(description, body, palm, closed)
+        yield from _filled(description, body, palm)
         yield from _widths(description, body, fingers)
 
 
@@ -119,6 +121,28 @@ def _outwards(
             "put a frame between the pads under `frames`: x out along the fingers, y the closing "
             "direction",
             ("end_effector", "frame"),
+        )
+
+
+def _filled(description: RobotDescription, body: Body, palm: list[str]) -> Iterator[FindingAtKeys]:
+    """Shapes of the palm that no one sees, between the open fingers."""
+    links = read_urdf(description.urdf).links
+    unseen = tuple(link.name for link in links if link.name in palm and not link.visuals)
+    shapes = _in_grasp(description, body, unseen, description.hand.max_width)
+    filling = [
+        name
+        for name, corners in zip(unseen, shapes, strict=True)
+        if corners[:, 0].max() > 0.0 and corners[:, 1].min() < 0.0 < corners[:, 1].max()
+    ]
+    if filling:
+        yield FindingAtKeys(
+            Severity.ERROR,
+            "hand-is-filled",
+            f"collision shapes without a visual one reach between the open fingers, so that "
+            f"nothing can be grasped: {', '.join(filling)}",
+            "describe the robot without such shapes, which only keep a distance; a maker's xacro "
+            "file has an argument for it, often that for a simulator",
+            ("end_effector", "touch_links"),
         )
 
 
