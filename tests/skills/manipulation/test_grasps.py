@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_skills.manipulation.hand.grasps import OPENING, TIGHT, Grasp, grasps_for
-from momantu_skills.manipulation.model.arm_model import arm_model
+from momantu_skills.manipulation.model.arm_model import ArmModel, arm_model
 from momantu_skills.manipulation.model.hulls import object_corners
 from momantu_worlds.robots import fetch, kinova_jackal
 
@@ -162,3 +162,18 @@ def test_parallel_fingers_change_nothing() -> None:
 def test_fingers_that_leave_no_room_leave_no_grasp() -> None:
     everywhere = np.array([[1.0, 0, 0, -1], [-1, 0, 0, -1], [0, 1, 0, -1], [0, -1, 0, -1]])
     assert grasps_for(thing("cylinder", (0.07, 0.07, 0.13)), HAND, PALM, [everywhere]) == []
+
+
+@pytest.mark.parametrize("model", [FETCH, KINOVA])
+def test_fingers_that_close_on_a_deep_box_meet_it_with_their_pads(model: ArmModel) -> None:
+    deep, width = thing("box", (0.11, 0.07, 0.14)), 0.07
+    hand = (model.description.hand, model.palm, model.open_fingers)
+    found = grasps_for(deep, *hand, closing=model.fingers_at)
+    along = np.linspace(-0.055, 0.055, 45)
+    faces = np.array([(x, y, z) for x in along for y in (-0.035, 0.035) for z in (0.0, 0.02)])
+    level = [g for g in found if g.object_from_grasp.rotation[0, 0] > 0.99]
+    assert level
+    for grasp in level:
+        local = grasp.object_from_grasp.inverse().apply(faces)
+        for planes in model.fingers_at(width):
+            assert (local @ planes[:, :3].T + planes[:, 3]).max(axis=1).min() >= -0.003

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,9 @@ OUT = 0.006
 """Step by which a grasp is moved outwards until the open fingers clear the object, m."""
 ROOM = 0.004
 """Clearance between open fingers and object, m: the detection error."""
+TOUCH = 0.002
+"""How deep fingers closed on an object may seem to be inside it, m: less than the detection error,
+and what pads give."""
 PAD_SHARE = 0.012
 """Length of the pads that must extend beyond the object's axis, m, so that they close on it."""
 FACE_SHARE = 0.035
@@ -87,12 +91,20 @@ class Grasp:
         return abs(width - self.width) <= tolerance
 
 
+class _Fingers(NamedTuple):
+    """Planes around each finger, in the grasp frame: fully open, and closed on the object."""
+
+    open: Sequence[Array]
+    closed: Sequence[Array]
+
+
 def grasps_for(
     thing: DetectedObject,
     hand: EndEffector,
     palm: Array,
     fingers: Sequence[Array] = (),
     tight: bool = False,
+    closing: Callable[[float], Sequence[Array]] | None = None,
 ) -> list[Grasp]:
     """All useful grasps, in a fixed order; those over its rim if the object is too wide for others.
 
@@ -100,16 +112,21 @@ def grasps_for(
     each open finger in the same frame, outward normal and offset. If the clearance near the
     knuckles is less than between the pads, the fingers hold the object farther out. tight: those
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
+    closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
+    edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
+    Round things slide out from between knuckles.
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
     fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
     for width, direction, top in fitting:
+        closed = closing(width) if closing is not None and thing.shape == "box" else ()
+        both = _Fingers(fingers, closed)
         if top:
-            found += _from_above(thing, hand, fingers, direction, width)
+            found += _from_above(thing, hand, both, direction, width)
         else:
             farthest = _farthest(thing, hand, direction, share)
-            found += _from_side(thing, hand, palm, fingers, direction, width, farthest)
+            found += _from_side(thing, hand, palm, both, direction, width, farthest)
     if not fitting:
         found = list(_over_rim(thing, hand))
     return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
@@ -135,7 +152,7 @@ def _from_side(
     thing: DetectedObject,
     hand: EndEffector,
     palm: Array,
-    fingers: Sequence[Array],
+    fingers: _Fingers,
     direction: float,
     width: float,
     farthest: float,
@@ -180,12 +197,26 @@ def _setback(local: Array, hand: EndEffector, palm: Array) -> float:
     return max(0.0, deepest - (hand.hand_clearance - SLACK))
 
 
-def _outwards(local: Array, fingers: Sequence[Array], back: float, farthest: float) -> float | None:
-    """`back`, or more if open fingers would touch the object; None if more than `farthest`, m."""
+def _outwards(local: Array, fingers: _Fingers, back: float, farthest: float) -> float | None:
+    """`back`, or more if fingers would touch the object; None if open ones do up to `farthest`, m.
+
+    Where closed ones do so everywhere, they hold the object as they can.
+    """
+    clear = _clear(local, fingers.open, ROOM, back, farthest)
+    if clear is None:
+        return None
+    closed = _clear(local, fingers.closed, -TOUCH, clear, farthest)
+    return clear if closed is None else closed
+
+
+def _clear(
+    local: Array, fingers: Sequence[Array], room: float, back: float, farthest: float
+) -> float | None:
+    """The least distance from `back` to `farthest` at which fingers clear points by `room`, m."""
     while back <= farthest:
         moved = local + np.array((back, 0.0, 0.0))
         inside = (
-            (moved @ planes[:, :3].T + planes[:, 3] < ROOM).all(axis=1).any() for planes in fingers
+            (moved @ planes[:, :3].T + planes[:, 3] < room).all(axis=1).any() for planes in fingers
         )
         if not any(inside):
             return back
@@ -196,7 +227,7 @@ def _outwards(local: Array, fingers: Sequence[Array], back: float, farthest: flo
 def _from_above(
     thing: DetectedObject,
     hand: EndEffector,
-    fingers: Sequence[Array],
+    fingers: _Fingers,
     direction: float,
     width: float,
 ) -> Iterator[Grasp]:

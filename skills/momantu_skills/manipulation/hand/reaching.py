@@ -134,14 +134,15 @@ def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
         Failure: NO_GRASP if there are none of these either.
     """
     effector, model = arm.scene.model.description.hand, arm.scene.model
-    grasps = grasps_for(thing, effector, model.palm, model.open_fingers)
+    hand = (effector, model.palm, model.open_fingers)
+    grasps = grasps_for(thing, *hand, closing=model.fingers_at)
     wide = bool(grasps) and grasps[0].rim
     if wide:
         space, seen = arm.scene.seen_space, arm.scene.points
         grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
         grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
     if not grasps:
-        tight = grasps_for(thing, effector, model.palm, model.open_fingers, tight=True)
+        tight = grasps_for(thing, *hand, tight=True, closing=model.fingers_at)
         grasps = [grasp for grasp in tight if not grasp.rim]
     if grasps:
         return grasps

@@ -132,13 +132,17 @@ class ArmModel:
 
     @cached_property
     def open_fingers(self) -> tuple[Array, ...]:
-        """Planes (k, 4) around each link of the fully opened fingers, in the grasp frame, m.
+        """Planes (k, 4) around each link of the fully opened fingers; see `fingers_at`."""
+        return self.fingers_at(self.description.hand.max_width)
 
-        Outward normal and offset: a point is inside if all values are negative.
+    def fingers_at(self, width: float) -> tuple[Array, ...]:
+        """Planes (k, 4) around each link of the fingers at an opening of `width` m, grasp frame.
+
+        Outward normal and offset in m: a point is inside if all values are negative.
         """
         effector = self.description.hand
         joint = self.pin.frames[self.frame_ids[effector.frame]].parentJoint
-        poses = self.link_poses(self.posture({}, effector.max_width))
+        poses = self.link_poses(self.posture({}, width))
         grasp = Transform.from_matrix(poses[effector.frame]) @ self.tip_from_grasp
         found = []
         for link in effector.touch_links:
