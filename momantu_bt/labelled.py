@@ -73,7 +73,11 @@ class Labelled:
 
 
 class Renderer(Protocol):
-    """Makes labelled pictures. It is made with worlds (none: its usual ones) and `testing`."""
+    """Makes labelled pictures.
+
+    An entry point of `momantu_bt.labelled` is called with the names of worlds (none: its usual
+    ones) and `testing`, whether to show what is kept for testing, and returns one.
+    """
 
     def picture(self, seed: int) -> Labelled:
         """The picture of a seed, the same whenever it is made."""
@@ -81,7 +85,7 @@ class Renderer(Protocol):
 
 
 def _objection(name: str, plugin: Any) -> str | None:
-    return None if callable(plugin) else f"{plugin!r} is not a class"
+    return None if callable(plugin) else f"{plugin!r} cannot be called"
 
 
 RENDERERS: Group[Callable[..., Renderer]] = Group("momantu_bt.labelled", "renderer", _objection)

@@ -18,6 +18,7 @@ from momantu_bt.diagnosis.packages import packages
 from momantu_bt.diagnosis.plugins import plugins
 from momantu_bt.errors import ExitCode
 from momantu_bt.faults.kinds.catalogue import FAULTS
+from momantu_bt.labelled import RENDERERS
 from momantu_bt.plugins import Group
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS
@@ -31,6 +32,7 @@ GROUPS: tuple[Group[Any], ...] = (
     BEHAVIOURS,
     SERVICES,
     DETECTORS,
+    RENDERERS,
     TUNABLES,
     ROBOTS,
     WORLDS,
