@@ -1,24 +1,24 @@
-"""record_view: write what the camera sees of tags into a file, for `calibrate robot`."""
+"""record_view: write what the camera sees of tags into a file, for calibrations."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import CameraImage, RobotState
 from momantu_bt.robot import Robot, read_camera
-from momantu_bt.skill import Failure, In, Out, Run, Skill, compute
+from momantu_bt.skill import Compute, Failure, In, Out, Run, Skill, compute
 from momantu_bt.symptom import Symptom
 
 with lazily():
-    from momantu_skills.perception.tags import detector
+    from momantu_skills.perception.tags import detector, recognise, view_lines
 
 BUDGET = 0.05
 """Time allowed for searching one picture, s."""
@@ -28,13 +28,22 @@ STANDING = 0.3
 """How long all must stand before the picture is taken, s."""
 PATIENCE = 5.0
 """How long to wait for that, s."""
+Shown: TypeAlias = tuple[list[tuple[int, float, Array]], Transform | None]
+"""Tags with their edges, m, and corners (4, 2), px; and the target's pose, if one is asked."""
 
 
 class RecordView(Skill):
     """Add a line to a file of views: the tags that the camera sees, the joints, the odometry."""
 
     file: str = In(doc="the file; it is made if it does not exist")
-    edge: float = In(unit="m", least=0.001, most=1, doc="length of the black squares' sides")
+    edge: float | None = In(
+        None, unit="m", least=0.001, most=1, doc="length of the black squares' sides"
+    )
+    target: str | None = In(
+        None,
+        names="tag",
+        doc="in place of `edge`: a bundle of the site, whose pose and the hand's are added",
+    )
     seen: int = Out(doc="how many tags the line has")
     also_called = ("collect_view", "save_view", "capture_view")
     failures = {
@@ -43,6 +52,7 @@ class RecordView(Skill):
         "VIEW_NOT_WRITTEN": "the file cannot be written, or it holds the views of another run",
     }
     senses = {"camera"}
+    one_of = (("edge", "target"),)
     activities = {}
     symptoms = {"TAG_NOT_SEEN": {Symptom.NOT_SEEN, Symptom.MARKER_NOT_SEEN}}
 
@@ -61,14 +71,43 @@ class RecordView(Skill):
                 raise Failure("STILL_MOVING", f"the robot still moves after {PATIENCE:g} s")
             yield "waiting"
         image, state = read_camera(robot), robot.state()
+        tags, poses = yield from (self._any(image) if self.target is None else self._its(image))
+        line = _line(robot.description.camera()[0], image, state, tags)
+        if poses is not None:
+            base, hand = robot.description.base_frame, robot.description.hand.frame
+            line[view_lines.HAND] = view_lines.numbers_of(
+                self.frames.lookup(base, hand, image.stamp)
+            )
+            line[view_lines.TARGET] = view_lines.numbers_of(poses)
+        _append(Path(self.file), json.dumps(line) + "\n", state.stamp)
+        self.seen = len(tags)
+
+    def _any(self, image: CameraImage) -> Generator[str | Compute, Any, Shown]:
+        """Every tag of the usual family."""
         found: dict[int, Array] = yield from compute(
             partial(detector.find_tags, [image]), budget=BUDGET
         )
         if not found:
             raise Failure("TAG_NOT_SEEN", "the camera's picture shows no tag")
-        name = robot.description.camera()[0]
-        _append(Path(self.file), _line(name, image, state, found, self.edge), state.stamp)
-        self.seen = len(found)
+        edge = cast(float, self.edge)
+        return [(tag, edge, corners) for tag, corners in sorted(found.items())], None
+
+    def _its(self, image: CameraImage) -> Generator[str | Compute, Any, Shown]:
+        """The tags of the target that count, and its pose in the camera's frame."""
+        name = cast(str, self.target)
+        if name not in self.site.tags:
+            known = ", ".join(self.site.tags) or "none"
+            raise Failure("TAG_NOT_SEEN", f"the site has no tag {name!r}; tags: {known}")
+        shown: recognise.Recognition = yield from compute(
+            partial(recognise.recognise, [image], {name: self.site.tags[name]}), budget=BUDGET
+        )
+        found = shown.named(name)
+        if found is None:
+            why = shown.refused.get(name, "none of its tags is in the picture")
+            raise Failure("TAG_NOT_SEEN", f"the camera's picture does not show {name}: {why}")
+        used = sorted(found.pose.used, key=lambda each: each.plate.tag_id)
+        tags = [(each.plate.tag_id, each.plate.edge, each.corners) for each in used]
+        return tags, found.pose.camera_from_bundle
 
 
 def _moves(state: RobotState) -> bool:
@@ -77,10 +116,10 @@ def _moves(state: RobotState) -> bool:
 
 
 def _line(
-    camera: str, image: CameraImage, state: RobotState, found: Mapping[int, Array], edge: float
-) -> str:
+    camera: str, image: CameraImage, state: RobotState, tags: Sequence[tuple[int, float, Array]]
+) -> dict[str, Any]:
     matrix, base = image.intrinsics, Pose2D.from_transform(state.odom_from_base)
-    data = {
+    return {
         "stamp": state.stamp,
         "camera": camera,
         "intrinsics": [float(matrix[at]) for at in ((0, 0), (1, 1), (0, 2), (1, 2))],
@@ -88,10 +127,9 @@ def _line(
         "odometry": [base.x, base.y, base.yaw],
         "tags": [
             {"id": tag, "edge": edge, "corners": np.round(corners, 4).tolist()}
-            for tag, corners in sorted(found.items())
+            for tag, edge, corners in tags
         ],
     }
-    return json.dumps(data) + "\n"
 
 
 def _append(file: Path, line: str, stamp: float) -> None:

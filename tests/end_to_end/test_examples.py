@@ -30,6 +30,7 @@ OUTPUTS: dict[str, Any] = {
     "tag_sigma": 0.001,
     "tag_covariance": (0.0,) * 36,
     "seen": 2,
+    "turned": 0.5,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
 }

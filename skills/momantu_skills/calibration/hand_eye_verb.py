@@ -14,7 +14,7 @@ from momantu_bt.formats.files import check_writable, write_whole
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from momantu_skills.calibration import hand_eye_text, notes, recorded
+    from momantu_skills.calibration import hand_eye_text, notes, of_views, recorded
     from momantu_skills.calibration.hand_eye import readings
     from momantu_skills.calibration.trajectory import reading
 
@@ -38,6 +38,9 @@ def hand_eye(
         Path | None, typer.Option(help="Poses of the target in the camera's frame: CSV or TUM.")
     ] = None,
     target_from_camera: Annotated[Path | None, typer.Option(help="The same, inverted.")] = None,
+    views: Annotated[
+        Path | None, typer.Option(help="Both, from the file that the skill record_view writes.")
+    ] = None,
     eye_on: Annotated[
         EyeOn, typer.Option(help="What carries the camera. On the base, the hand holds the target.")
     ] = EyeOn.HAND,
@@ -61,15 +64,21 @@ def hand_eye(
 
     Examples:
       momantu-bt calibrate hand-eye --base-from-hand hand.csv --camera-from-target tag.csv
+      momantu-bt calibrate hand-eye --views views.jsonl --json camera.json
       momantu-bt calibrate hand-eye --base-from-hand a.txt --target-from-camera b.txt --align-time
       momantu-bt calibrate hand-eye --base-from-hand a.csv --camera-from-target b.csv --eye-on base
     """
     if json_file is not None:
         check_writable(json_file)
-    hand = _one(base_from_hand, hand_from_base, "--base-from-hand", "--hand-from-base")
-    target = _one(
-        camera_from_target, target_from_camera, "--camera-from-target", "--target-from-camera"
-    )
+    hands = base_from_hand, hand_from_base
+    targets = camera_from_target, target_from_camera
+    if views is None:
+        hand = _one(*hands, "--base-from-hand", "--hand-from-base")
+        target = _one(*targets, "--camera-from-target", "--target-from-camera")
+    elif any(each is not None for each in (*hands, *targets)):
+        raise InputError("--views has both poses; give it alone")
+    else:
+        hand, target = of_views.trajectories(views)
     settings = recorded.Settings(eye_on is EyeOn.BASE, align_time, gap, seed)
     try:
         found = recorded.calibrate(hand, target, settings)

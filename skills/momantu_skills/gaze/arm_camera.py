@@ -118,7 +118,7 @@ def plan_gaze(
     postures = _ranked(arm, held, ray, point)
     for margin in arm.planning.margins:
         world = arm.scene.world(state, held, margin, extra=around)
-        goals = _free(arm, world, postures[:TESTED], point)
+        goals = free_postures(arm, world, postures[:TESTED], point)
         if goals:
             return arm.route(goals, held, extra=around)
     x, y, z = point
@@ -139,7 +139,7 @@ def _ranked(arm: Arm, held: HeldObject | None, ray: Array, point: Array) -> Arra
     eye, config = model.eye, GazeConfig()
     sensor = model.description.camera()[1]
     index = [model.group.names.index(name) for name in eye.names]
-    found, off = eye.point(_starts(arm, start[index], ray, point), ray, point)
+    found, off = eye.point(start_postures(arm, start[index], ray, point), ray, point)
     found = eye.nearest_turn(found, start[index])
     cameras = eye.poses(found)
     cost = np.max(np.abs(found - start[index]) / eye.velocity, axis=1)
@@ -155,7 +155,7 @@ def _ranked(arm: Arm, held: HeldObject | None, ray: Array, point: Array) -> Arra
     return np.asarray(postures[order[usable[order]]])
 
 
-def _starts(arm: Arm, start: Array, ray: Array, point: Array) -> Array:
+def start_postures(arm: Arm, start: Array, ray: Array, point: Array) -> Array:
     """Start postures (m, n): around the current one, and library ones that almost see it."""
     eye, library = arm.scene.model.eye, _library(arm.scene.model)
     spread = np.repeat(SPREAD, NEARBY // len(SPREAD))[:, None]
@@ -190,7 +190,7 @@ def _penalty(cameras: Array, ray: Array, point: Array, config: GazeConfig) -> Ar
     return np.asarray(cost + config.roll_penalty * np.abs(cameras[:, 2, 0]))
 
 
-def _free(arm: Arm, world: CollisionWorld, postures: Array, point: Array) -> list[Array]:
+def free_postures(arm: Arm, world: CollisionWorld, postures: Array, point: Array) -> list[Array]:
     """The first postures without collision and with a free line from camera to point."""
     eye = arm.scene.model.eye
     index = [arm.group.names.index(name) for name in eye.names]

@@ -14,9 +14,10 @@ import numpy as np
 from momantu_bt.formats.text import TextError, read_text
 from momantu_bt.geometry import Array
 from momantu_skills.calibration.errors import CalibrationError
+from momantu_skills.perception.tags.view_lines import HAND, TARGET
 
 _MOST_BYTES = 200_000_000
-_KEYS = ("stamp", "camera", "intrinsics", "joints", "odometry", "tags")
+_KEYS = ("stamp", "camera", "intrinsics", "joints", "odometry", "tags", HAND, TARGET)
 _LARGE_EDGE = 2.0
 """m; a tag with a larger edge was written in other units."""
 
@@ -38,7 +39,8 @@ class Row:
     """One line. joints: rad or m by name; odometry: x, y, yaw in m and rad, or None.
 
     intrinsics: fx, fy, cx, cy in px, of an undistorted picture; None in a line without tags.
-    camera: None, the robot's first one.
+    camera: None, the robot's first one. hand, target: base_from_hand and camera_from_target, each
+    x, y, z in m, qx, qy, qz, qw.
     """
 
     line: int
@@ -48,6 +50,8 @@ class Row:
     joints: dict[str, float]
     odometry: Array | None
     tags: tuple[TagSeen, ...]
+    hand: Array | None = None
+    target: Array | None = None
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -135,7 +139,13 @@ def _row(number: int, data: Any) -> Row:
         {str(name): _number(at, f"joint {name}", "rad or m") for name, at in joints.items()},
         None if odometry is None else _numbers(data, "odometry", 3, "[x, y, yaw] in m and rad"),
         tags,
+        _pose(data, HAND),
+        _pose(data, TARGET),
     )
+
+
+def _pose(data: dict[str, Any], key: str) -> Array | None:
+    return _numbers(data, key, 7, "[x, y, z, qx, qy, qz, qw]") if key in data else None
 
 
 def _tag(data: Any) -> TagSeen:
