@@ -46,7 +46,6 @@ class ViewTag(Skill):
     activities = {}
     symptoms = {
         "NO_PLAN": {Symptom.ARM_WAY_BLOCKED},
-        "START_IN_COLLISION": {Symptom.ARM_WAY_BLOCKED},
         "ARM_STUCK": {Symptom.ARM_OFF_COURSE},
     }
     planning_scene: ArmScene = Needs()
