@@ -4,6 +4,7 @@ Skills are scripted: they take their time, and end as the test wants.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,6 +16,7 @@ from momantu_bt.messages import DetectedObject, SupportPlane
 from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot
 from momantu_bt.skill import MISSING, Run, Skill
+from momantu_bt.tags import single_tag
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.tree.files.lookup import bundled
 from momantu_bt.tree.load import load
@@ -95,7 +97,8 @@ def go(example: str, script: Script, **options: Any) -> Report:
     """Run an example in the site that it is meant for, with scripted skills."""
     skills = {name: script.stand_in(name) for name in INSTALLED.skills}
     registry = Registry(skills, {}, {}, dict.fromkeys(INSTALLED.services))
-    world = ScriptedWorld(site=WORLDS.load("four_rooms").site())
+    site = replace(WORLDS.load("four_rooms").site(), tags={"board": single_tag(1, 0.1)})
+    world = ScriptedWorld(site=site)
     return run(f"examples/{example}", world=world, registry=registry, **options)
 
 
