@@ -178,7 +178,7 @@ class NavigationConfig(Tunables):
     )
     depth_every: Size = Field(default=1.3, description="distance driven between two depth pictures")
     lowest_obstacle: Size = Field(
-        default=0.06,
+        default=0.03,
         description="height above the floor above which points are obstacles, up "
         "to the robot's own height",
     )

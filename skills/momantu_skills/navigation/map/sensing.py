@@ -19,11 +19,18 @@ SPREAD = 0.12
 wall."""
 
 
-STRIDE = 6
-"""Every sixth pixel in each direction is used: 2 cm apart at 2 m for a usual camera."""
+SPACING = 0.011
+"""Angle between the pixels that are used, rad: 2 cm apart at 2 m, every sixth of a usual camera."""
 TILT_DOUBT = 0.02
-"""Apparent height of the floor per m of distance that is not an obstacle: camera mounting and depth
-noise."""
+"""Largest apparent height of the floor per m of distance: how far camera and base may be tilted."""
+HEIGHT_DOUBT = 0.01
+"""Largest apparent height per m of distance of a floor whose tilt was measured: depth noise."""
+FLOOR_POINTS = 100
+"""Fewest points of the floor that tell its tilt."""
+NORMAL_MAD = 1.48
+"""Standard deviation of normal noise over the median of its absolute values."""
+FLOOR_ROUNDS = 3
+"""Rounds of fitting the floor, each without the points that the last one left far off."""
 LONGEST_ROBOT = 1.5
 """Distance from the base's axis, m, within which a point may belong to the robot itself."""
 
@@ -84,7 +91,8 @@ def obstacles_and_floor(
 ) -> tuple[Array, Array]:
     """Obstacle points (n, 2) and points (m, 2) of free floor, base frame, m.
 
-    The base frame's origin lies on the floor. Points on the robot and its held object are removed.
+    The base frame's origin lies on the floor, nearly: the floor's tilt is measured in the picture.
+    Points on the robot and its held object are removed.
     """
     points = _points(image)
     points = frames.lookup(description.base_frame, image.frame, image.stamp).apply(points)
@@ -93,10 +101,12 @@ def obstacles_and_floor(
         points[distance < config.depth_reach],
         distance[distance < config.depth_reach],
     )
-    doubt = TILT_DOUBT * distance
     low, high = config.lowest_obstacle, description.height
-    in_way = (points[:, 2] > low + doubt) & (points[:, 2] < high)
-    bare = np.abs(points[:, 2]) < 0.5 * low + doubt
+    floor = _floor_heights(points, distance, low)
+    doubt = (TILT_DOUBT if floor is None else HEIGHT_DOUBT) * distance
+    heights = points[:, 2] if floor is None else points[:, 2] - floor
+    in_way = (heights > low + doubt) & (points[:, 2] < high)
+    bare = np.abs(heights) < 0.5 * low + doubt
     near = in_way & (distance < LONGEST_ROBOT)
     own = np.zeros(len(points), dtype=bool)
     if near.any():
@@ -104,12 +114,33 @@ def obstacles_and_floor(
     return points[in_way & ~own, :2], points[bare, :2]
 
 
+def _floor_heights(points: Array, distance: Array, low: float) -> Array | None:
+    """Where the floor is below and above the points (n, 3), base frame, m: (n,).
+
+    A plane through the lowest points, by least squares. None if there are too few of them, or if
+    the plane is tilted by more than a floor can seem to be: then it is something else.
+    """
+    most = 0.5 * low + TILT_DOUBT * distance
+    chosen = np.abs(points[:, 2]) < most
+    flat = np.column_stack([points[:, :2], np.ones(len(points))])
+    heights = np.zeros(len(points))
+    for _ in range(FLOOR_ROUNDS):
+        if np.count_nonzero(chosen) < FLOOR_POINTS:
+            return None
+        plane = np.linalg.lstsq(flat[chosen], points[chosen, 2], rcond=None)[0]
+        heights = flat @ plane
+        off = np.abs(points[:, 2] - heights)
+        chosen &= off < 3.0 * NORMAL_MAD * np.median(off[chosen]) + 1e-3
+    return heights if np.all(np.abs(heights) < most) else None
+
+
 def _points(image: CameraImage) -> Array:
     """Measured pixels as points (n, 3) in the optical frame, m."""
-    depth = image.depth[::STRIDE, ::STRIDE].astype(np.float64)
+    k = image.intrinsics
+    stride = max(1, round(SPACING * k[0, 0]))
+    depth = image.depth[::stride, ::stride].astype(np.float64)
     rows, columns = np.nonzero(depth > 0.0)
     z = depth[rows, columns]
-    k = image.intrinsics
-    x = (columns * STRIDE - k[0, 2]) / k[0, 0] * z
-    y = (rows * STRIDE - k[1, 2]) / k[1, 1] * z
+    x = (columns * stride - k[0, 2]) / k[0, 0] * z
+    y = (rows * stride - k[1, 2]) / k[1, 1] * z
     return np.stack([x, y, z], axis=1)

@@ -54,6 +54,7 @@ class Truth:
         self._entities: dict[str, Any] = {}
         self._poses: dict[str, tuple[bytes, Transform]] = {}
         self._impulses: dict[tuple[str, str], Impulse] = {}
+        self._joints_before = model.positions()
         self.watching = False
         self.robot_links = frozenset(model.links)
         self._links = frozenset(model.links.values())
@@ -133,8 +134,12 @@ class Truth:
         return float(np.hypot(linear[0], linear[1])), abs(float(angular[2]))
 
     def joint_speeds(self) -> dict[str, JointSpeed]:
-        """Speeds of all active joints of the robot, by name."""
-        speeds = np.abs(self._model.velocities()).tolist()
+        """Speeds of all active joints of the robot during the last tick, by name.
+
+        They come from the positions: the physics gives a joint that is blocked, as a finger by what
+        it holds, a velocity although it does not move.
+        """
+        speeds = (np.abs(self._model.positions() - self._joints_before) / TICK).tolist()
         return {
             name: JointSpeed(speeds[self._model.index[name]], joint.type == "prismatic")
             for name, joint in self._model.joints.items()
@@ -162,8 +167,9 @@ class Truth:
         )
 
     def begin_tick(self) -> None:
-        """Forget the contacts of the previous tick."""
+        """Forget the contacts of the previous tick; remember where the joints are."""
         self._impulses.clear()
+        self._joints_before = self._model.positions()
 
     def collect(self, *, last: bool) -> None:
         """Add the contact impulses of the last physics step.

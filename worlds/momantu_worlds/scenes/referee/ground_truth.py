@@ -74,5 +74,5 @@ class GroundTruth(Protocol):
         ...
 
     def joint_speeds(self) -> Mapping[str, JointSpeed]:
-        """Current speeds of the joints of arm, head and gripper, by name."""
+        """Speeds of the joints of arm, head and gripper during the last tick, by name."""
         ...
