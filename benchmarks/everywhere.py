@@ -2,8 +2,9 @@
 
     python benchmarks/everywhere.py --seeds 1000:1060 four_rooms/fetch four_rooms/kinova_jackal
     python benchmarks/everywhere.py --seeds 1000:1040 small_flat/fetch warehouse/fetch
+    python benchmarks/everywhere.py --seeds 0:20 benchmarks/homes/corners.yaml/fetch
 
-Each pair is a bench of its own (`momantu-bt bench`), so that it goes on where it was stopped. A
+A world is a name or a file. Each pair is a bench of its own (`momantu-bt bench`), so that it goes on where it was stopped. A
 world that needs other values than the tree's own has them in `trees/values/<world>.yaml`.
 """
 
@@ -20,7 +21,17 @@ from typing import Any
 from momantu_bt.bench.reports.table import columns
 
 VALUES = Path("trees/values")
-HEAD = ("world", "robot", "brought", "95 % interval", "median s", "p95 s", "false claims", "harm")
+HEAD = (
+    "world",
+    "robot",
+    "brought",
+    "95 % interval",
+    "median s",
+    "p95 s",
+    "false claims",
+    "harm",
+    "force N",
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,23 +46,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     told.out.mkdir(parents=True, exist_ok=True)
     rows = [HEAD]
     for world, robot in told.pairs:
-        folder = told.out / f"{world}-{robot}"
+        name = Path(world).stem
+        folder = told.out / f"{name}-{robot}"
         report = folder.with_suffix(".json")
         command = [sys.executable, "-m", "momantu_bt", "bench", told.tree, "--seeds", told.seeds]
         command += ["--world", world, "--robot", robot, "--jobs", told.jobs]
         command += ["--out", str(folder), "--report", str(report)]
-        if (values := VALUES / f"{world}.yaml").is_file():
+        if (values := VALUES / f"{name}.yaml").is_file():
             command += ["--values", str(values)]
         code = subprocess.run(command, check=False).returncode
         if code:
             return code
-        rows.append(_row(world, robot, json.loads(report.read_text(encoding="utf-8"))))
+        rows.append(_row(name, robot, json.loads(report.read_text(encoding="utf-8"))))
     print("\n".join(columns(rows)))
     return 0
 
 
 def _pair(text: str) -> tuple[str, str]:
-    world, slash, robot = text.partition("/")
+    world, slash, robot = text.rpartition("/")
     if not (world and slash and robot):
         raise argparse.ArgumentTypeError(f"{text}: expected WORLD/ROBOT, as in four_rooms/fetch")
     return world, robot
@@ -70,6 +82,7 @@ def _row(world: str, robot: str, found: dict[str, Any]) -> tuple[str, ...]:
         *("-" if times[k] is None else f"{times[k]:.1f}" for k in ("median", "p95")),
         str(false),
         str(sum(len(seeds) for seeds in found["incidents"].values())),
+        "-" if found["force"] is None else f"{found['force']['largest']:.0f}",
     )
 
 
