@@ -4,8 +4,9 @@
     python benchmarks/everywhere.py --seeds 1000:1040 small_flat/fetch warehouse/fetch
     python benchmarks/everywhere.py --seeds 0:20 benchmarks/homes/corners.yaml/fetch
 
-A world is a name or a file. Each pair is a bench of its own (`momantu-bt bench`), so that it goes on where it was stopped. A
-world that needs other values than the tree's own has them in `trees/values/<world>.yaml`.
+A world is a name or a file. Each pair is a bench of its own (`momantu-bt bench`), so that it goes
+on where it was stopped. A world that needs other values than the tree's own has them in
+`trees/values/<world>.yaml`.
 """
 
 from __future__ import annotations
