@@ -86,6 +86,22 @@ def test_only_the_newest_pictures_count() -> None:
     assert not looks(AHEAD, *[behind] * KEPT).show(point).any()
 
 
+@given(st.floats(0.3, 2.0), st.floats(0.3, 2.0), st.floats(-0.9, 0.9))
+def test_a_point_is_hidden_behind_what_stands_before_it_or_beside_the_picture(
+    stands: float, x: float, across: float
+) -> None:
+    image = picture()
+    image.depth[:] = stands
+    taken = SeenSpace()
+    assert taken.hidden(np.zeros((1, 3)), 0.05).all()
+    taken.add(image, AHEAD, NEAREST)
+    point, beside = (x, across * x, 0.8), (x, 1.1 * x, 0.8)
+    hidden = taken.hidden(np.array([point, beside]), 0.05)
+    assert hidden[1]
+    if abs(x - 0.05 - stands) > 1e-6:
+        assert bool(hidden[0]) is (stands < x - 0.05)
+
+
 def test_a_way_in_sight_is_no_blind_spot() -> None:
     assert blind_spot(arm(looks(AHEAD), known=0.0), way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))) is None
 
