@@ -117,7 +117,7 @@ def _parse(
         if link.name in simulation.no_collision_links:
             link.collision_records.clear()
         _unwrap(link.joint_record, simulation)
-        _give_room(link.joint_record, own)
+        give_room(link.joint_record, own)
     for name in simulation.floor_links:
         links[name].collision_groups[2] |= FLOOR_BIT
     _ignore_pairs(links, (*description.ignored_collisions, *simulation.ignored_collisions))
@@ -149,7 +149,7 @@ def _unwrap(joint: Any, simulation: SimulationModel) -> None:
         joint.limits = [[-FLOOR_REACH, FLOOR_REACH]]
 
 
-def _give_room(joint: Any, opening: Mapping[str, Sequence[tuple[float, float]]]) -> None:
+def give_room(joint: Any, opening: Mapping[str, Sequence[tuple[float, float]]]) -> None:
     """Let a finger joint take every position of its opening.
 
     The range of a joint that follows another one may be written for the other way round.
