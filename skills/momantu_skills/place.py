@@ -26,8 +26,7 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 with lazily():
     from momantu_skills.gaze import unseen_ways
     from momantu_skills.manipulation.hand import rims, verification
-    from momantu_skills.manipulation.model import hulls
-    from momantu_skills.manipulation.model.collision import Obstacle
+    from momantu_skills.manipulation.model import collision, hulls
 
 
 THINKING = 0.4
@@ -216,7 +215,7 @@ class Place(Skill):
         In the pose `ready` it does not hide what is before the robot.
         """
         goal = arm.posed(arm.robot.description.named_poses["ready"])
-        solid = Obstacle("set down", arm.state.odom_from_base.inverse().apply(corners))
+        solid = collision.Obstacle("set down", arm.state.odom_from_base.inverse().apply(corners))
         try:
             way = yield from compute(lambda: arm.route([goal], None, extra=(solid,)), THINKING)
         except Failure:
