@@ -10,18 +10,15 @@ from momantu_bt.claim import BaseAt, Claim, GripperOpen, Holding
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
-from momantu_bt.robot import CameraSensor, Robot
+from momantu_bt.robot import Robot
 from momantu_bt.service import Localization
 from momantu_bt.skill import In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.localize.confidence import estimate, is_localized, sigmas
-from momantu_skills.perception.camera.snapshot import take
 
 with lazily():
-    from momantu_skills.manipulation.hand import between_pads, evidence
-    from momantu_skills.manipulation.scene import payload
-    from momantu_skills.manipulation.scene.payload import Weight
+    from momantu_skills.manipulation.hand import evidence, weighing
 
 
 NEAR = 1.5
@@ -32,8 +29,6 @@ GAUGE = 0.003
 """Largest error of the gripper's measured opening, m."""
 ASTRAY = 0.10
 """Largest error of the robot's own position when it reports its distance from a place, m."""
-FEELING = 10
-"""Ticks over which fingers and weight are averaged if their first readings do not decide: 0.5 s."""
 NO = ("NOT_HOLDING", "HOLDING", "NOT_LOCALIZED", "NOT_NEAR", "NOT_OPEN")
 """Failure codes that mean that the answer is no."""
 Question: TypeAlias = Literal["holding", "not_holding", "localized", "near", "gripper_open"]
@@ -44,7 +39,7 @@ class Check(Skill):
 
     Whether the hand holds something is weighed from fingers, weight and picture. Where the first
     readings do not decide, it feels for half a second and takes a picture of the hand as it is;
-    after that it says HOLDING_UNKNOWN, and what would help.
+    after that it says HOLDING_UNKNOWN, and `examine_hand` finds out.
     """
 
     what: Question = In(doc='what to check; "near" needs `place`')
@@ -105,51 +100,16 @@ class Check(Skill):
         if robot.description.end_effector is None:
             self._answer(evidence.Grip.EMPTY, [])
             return
-        found = self._felt(robot, [])
-        if self._in_doubt(found):
-            weights = []
-            for _ in range(FEELING):
-                yield "feeling"
-                weights.append(self.planning_scene.payload.weigh(robot))
-            found = self._felt(robot, weights)
-        if evidence.weighed(found) is evidence.Grip.UNKNOWN:
-            found += self._seen(robot)
+        found = yield from weighing.weigh(self, robot, self.planning_scene)
         self._answer(evidence.weighed(found), found)
 
-    def _in_doubt(self, found: Sequence[evidence.Evidence]) -> bool:
-        """Whether to feel longer: fingers may be jammed, so all senses must say that it holds."""
-        grip = evidence.weighed(found)
-        return grip is not evidence.Grip.EMPTY and not evidence.clear(found)
-
-    def _felt(self, robot: Robot, weights: Sequence[Weight | None]) -> list[evidence.Evidence]:
-        """What fingers and weight say; weights: earlier readings."""
-        scene = self.planning_scene
-        widest = robot.description.hand.max_width
-        found = [evidence.of_fingers(scene.holding.fingers, widest, scene.scene.config)]
-        known = [each for each in (*weights, scene.payload.weigh(robot)) if each is not None]
-        if known:
-            found.append(evidence.of_weight(payload.mean_weight(known)))
-        return found
-
-    def _seen(self, robot: Robot) -> list[evidence.Evidence]:
-        """What a picture of the hand, as it is, says; nothing without a camera that works."""
-        sensors = robot.description.sensors.values()
-        if not any(isinstance(sensor, CameraSensor) for sensor in sensors):
-            return []
-        try:
-            view = between_pads.between_pads(self.planning_scene.scene, take(robot, self.frames))
-            return [evidence.of_picture(view)]
-        except Failure as failure:
-            return [evidence.Evidence("picture", 0.0, failure.value.message)]
-
     def _answer(self, grip: evidence.Grip, found: Sequence[evidence.Evidence]) -> None:
-        said = "; ".join(each.text for each in found) or "the robot has no hand"
-        data = {each.sense: round(each.odds, 1) for each in found}
+        said, data = weighing.told(found), weighing.odds(found)
         if grip is evidence.Grip.UNKNOWN:
             raise Failure(
                 "HOLDING_UNKNOWN",
-                f"{said}; to find out, bring the hand to where the camera sees it, lift it off "
-                "what it leans on, or open and close it where nothing can be lost",
+                f"{said}; to find out, run examine_hand: it looks at the hand, presses the fingers "
+                "together and lifts the hand off what it leans on",
                 **data,
             )
         if self.what == "holding" and grip is evidence.Grip.EMPTY:

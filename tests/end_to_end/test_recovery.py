@@ -19,7 +19,7 @@ TREE = Path(__file__).resolve().parents[2] / "trees" / "bring_object.yaml"
 INSTALLED = Registry.installed()
 USED = (
     "navigate", "relocalize", "check", "detect_object", "find_apriltag", "detect_plane", "pick",
-    "place", "reset_pose", "release", "find_surface",
+    "place", "reset_pose", "release", "find_surface", "examine_hand",
 )  # fmt: skip
 NEVER_HERE = {
     ("navigate", "BAD_GOAL"), ("reset_pose", "UNKNOWN_POSE"), ("check", "BAD_QUESTION"),
@@ -29,7 +29,7 @@ NEVER_HERE = {
 FINAL = {("place", "TOPPLED"), ("place", "LOST")}
 """The object lies somewhere: no skill picks up what has fallen."""
 LETS_GO = {"place", "release"}
-HANDLERS_OWN = {"relocalize", "release", "find_surface"}
+HANDLERS_OWN = {"relocalize", "release", "find_surface", "examine_hand"}
 """Skills that only handlers start."""
 
 POSE = Pose(Transform((1.0, 0.0, 0.8)), "odom", 0.0)
@@ -40,6 +40,7 @@ OUTPUTS: dict[str, Any] = {
     "tag_covariance": (0.0,) * 36,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
+    "holding": True,
 }
 
 
@@ -60,7 +61,8 @@ class Script:
     """What each start of a skill does: succeed, or fail with the next code scripted for it.
 
     holding: whether the hand has the object, for the questions that ask for it; None: it cannot be
-    told. cut_off: a pick that fails has the object all the same.
+    told. really: what examining the hand finds out; None: nothing new. cut_off: a pick that fails
+    has the object all the same.
     """
 
     def __init__(self) -> None:
@@ -68,6 +70,7 @@ class Script:
         self.always: dict[str, str] = {}
         self.starts: list[str] = []
         self.holding: bool | None = False
+        self.really: bool | None = None
         self.cut_off = False
 
     def skills(self) -> dict[str, type[Skill]]:
@@ -85,6 +88,8 @@ class Script:
                 if script.holding is not (self.what == "holding"):
                     code = "HOLDING" if script.holding else "NOT_HOLDING"
                     raise Failure(code, "the hand says otherwise")
+            if name == "examine_hand" and script.really is not None:
+                script.holding = script.really
             code = next(iter(script.failures.get(name, [])), script.always.get(name))
             if code is not None:
                 if script.failures.get(name):
@@ -143,6 +148,16 @@ def test_what_may_be_in_the_hand_is_neither_looked_for_nor_let_fall() -> None:
     assert report.failure is not None
     assert "HOLDING_UNKNOWN" in [link.code for link in report.failure.chain()]
     assert not {"detect_object", "pick", "release", "place"} & set(script.starts)
+
+
+@pytest.mark.parametrize("really", [True, False])
+def test_what_may_be_in_the_hand_is_found_out(really: bool) -> None:
+    script = Script()
+    script.holding, script.really = None, really
+    report = bring(script)
+    assert report.status == "SUCCESS", report.failure
+    assert script.starts.count("examine_hand") == 1
+    assert script.starts.count("pick") == (0 if really else 1)
 
 
 def test_what_is_held_after_a_failure_is_not_looked_for_on_the_table() -> None:

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.check import FEELING, Check
+from momantu_skills.check import Check
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.hand import between_pads
 from momantu_skills.manipulation.hand.between_pads import View
+from momantu_skills.manipulation.hand.weighing import FEELING
 from momantu_skills.manipulation.scene.holding import Fingers
 from momantu_skills.manipulation.scene.payload import Weight
 
@@ -29,12 +30,12 @@ def check(what: str, *, robot: Any = None, place: str | None = None, **beliefs: 
     )
     held = SimpleNamespace(object=SimpleNamespace(category="can"))
     holds = bool(beliefs.get("holding"))
-    weights = beliefs.get("weights", lambda: beliefs.get("weight"))
+    weights = beliefs.get("weights", lambda: beliefs.get("weight", CAN if holds else None))
     fingers = beliefs.get("fingers", Fingers(0.07, 45.0) if holds else Fingers(0.1, 0.0))
     scene = SimpleNamespace(
         held=held if holds else None,
         holding=SimpleNamespace(fingers=fingers),
-        payload=SimpleNamespace(weigh=lambda robot: weights()),
+        payload=SimpleNamespace(weigh=lambda robot: weights(), raised=bool(beliefs.get("raised"))),
         scene=SimpleNamespace(config=SceneConfig()),
     )
     services = {"localization": localization, "planning_scene": scene}
@@ -84,16 +85,18 @@ PRESSING = Fingers(0.07, 45.0)
 
 def look(monkeypatch: pytest.MonkeyPatch, view: View) -> None:
     monkeypatch.setattr(between_pads, "between_pads", lambda scene, snapshot: view)
-    monkeypatch.setattr("momantu_skills.check.take", lambda robot, frames: None)
+    monkeypatch.setattr(
+        "momantu_skills.manipulation.hand.weighing.take", lambda robot, frames: None
+    )
 
 
 @pytest.mark.parametrize(
     ("beliefs", "code"),
     [
-        ({"fingers": Fingers(0.04, 44.0)}, None),
+        ({"fingers": Fingers(0.04, 44.0), "weight": CAN}, None),
         ({"fingers": Fingers(0.083, 44.0), "weight": CAN}, None),
         ({"fingers": Fingers(0.04, 0.2), "weight": LIGHT, "holding": True}, "NOT_HOLDING"),
-        ({"fingers": Fingers(0.0, 44.0), "holding": True}, "NOT_HOLDING"),
+        ({"fingers": Fingers(0.0, 44.0), "weight": LIGHT, "holding": True}, "NOT_HOLDING"),
     ],
 )
 def test_the_hand_is_asked_and_not_an_earlier_belief(beliefs: Any, code: str | None) -> None:
@@ -105,16 +108,17 @@ def test_the_hand_is_asked_and_not_an_earlier_belief(beliefs: Any, code: str | N
 @pytest.mark.parametrize(
     ("weight", "view", "holding", "not_holding"),
     [
-        (VAGUE, View(60, 0.0), None, "HOLDING"),
-        (VAGUE, View(0, 1.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
+        (VAGUE, View(60, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
+        (VAGUE, View(0, 1.0), "NOT_HOLDING", None),
         (LIGHT, View(0, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
         (LIGHT, View(60, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
         (LIGHT, View(0, 1.0), "NOT_HOLDING", None),
+        (None, View(60, 0.0), "HOLDING_UNKNOWN", "HOLDING_UNKNOWN"),
     ],
 )
 def test_what_the_fingers_do_not_decide_is_weighed_and_looked_at(
     monkeypatch: pytest.MonkeyPatch,
-    weight: Weight,
+    weight: Weight | None,
     view: View,
     holding: str | None,
     not_holding: str | None,
@@ -138,6 +142,12 @@ def test_what_hangs_on_fingers_that_do_not_press_is_no_loss(
     assert "carries 3.9 N" in result.failure.message
     assert "to find out" in result.failure.message
     assert result.failure.data["fingers"] < 0.0 < result.failure.data["weight"]
+
+
+def test_fingers_that_press_on_nothing_that_weighs_hold_nothing_once_they_were_raised() -> None:
+    beliefs: dict[str, Any] = {"fingers": PRESSING, "weight": LIGHT, "raised": True}
+    assert check("holding", **beliefs).code == "NOT_HOLDING"
+    assert check("not_holding", **beliefs).status == "SUCCESS"
 
 
 def test_one_noisy_weight_does_not_make_jammed_fingers_hold_something(

@@ -231,6 +231,18 @@ class Arm:
         if path is not None and self._way_out(path):
             yield from self.follow(self.trajectory(path, self.hand.lift_speed), "drawing back")
 
+    def rise(self, distance: float) -> Generator[str, None, bool]:
+        """Lift the hand straight up, where possible; whether it was.
+
+        What is at the hand is ignored: it may be held. Raises Failure ARM_STUCK.
+        """
+        start = self.joints
+        path = self.line(start, Transform((0.0, 0.0, distance)) @ self.group.tip_pose(start))
+        if path is None or not self._way_out(path):
+            return False
+        yield from self.follow(self.trajectory(path, self.hand.approach_speed), "lifting")
+        return True
+
     def _way_out(self, path: Array) -> bool:
         state, half = self.state, self.open_width / 2 + AROUND
         tip = self.group.tip_pose(self.joints) @ self.scene.model.tip_from_grasp

@@ -30,14 +30,14 @@ NOTHING_SEEN = View(0, 0.0)
 @pytest.mark.parametrize(
     ("fingers", "weight", "grip"),
     [
-        (PRESSING, None, Grip.HELD),
+        (PRESSING, None, Grip.UNKNOWN),  # fingers may be jammed
         (FREE, None, Grip.EMPTY),
         (PRESSING, Weight(3.9, 0.25, 0.1), Grip.HELD),
+        (PRESSING, Weight(3.9, 0.25, 0.6), Grip.HELD),
         (FREE, Weight(0.1, 0.25, 0.1), Grip.EMPTY),
         (PRESSING, Weight(0.6, 0.08, 0.06), Grip.HELD),
-        (PRESSING, Weight(0.0, 0.25, 0.1), Grip.UNKNOWN),
+        (PRESSING, Weight(0.0, 0.25, 0.1), Grip.UNKNOWN),  # jammed, or what is held stands
         (FREE, Weight(3.9, 0.25, 0.1), Grip.UNKNOWN),
-        (OPENED, Weight(3.9, 0.25, 0.1), Grip.EMPTY),
         (Fingers(0.07, 3.0), None, Grip.UNKNOWN),
         (Fingers(0.001, 45.0), None, Grip.EMPTY),
         (Fingers(math.nan, math.nan), None, Grip.UNKNOWN),
@@ -45,26 +45,36 @@ NOTHING_SEEN = View(0, 0.0)
 )
 def test_fingers_and_weight_together(fingers, weight, grip) -> None:
     evidence = [of_fingers(fingers, 0.1, CONFIG)]
-    evidence += [] if weight is None else [of_weight(weight)]
+    evidence += [] if weight is None else [of_weight(weight, raised=False)]
     assert weighed(evidence) is grip
+
+
+def test_fingers_that_press_on_nothing_that_weighs_are_jammed_once_they_were_raised() -> None:
+    """Before, what they press on may stand on something."""
+    weight = Weight(0.0, 0.08, 0.07)
+    pressing = of_fingers(PRESSING, 0.1, CONFIG)
+    assert weighed([pressing, of_weight(weight, raised=False)]) is Grip.UNKNOWN
+    assert weighed([pressing, of_weight(weight, raised=True)]) is Grip.EMPTY
 
 
 @pytest.mark.parametrize(
     ("view", "grip"),
-    [
-        (View(80, 0.0), Grip.HELD),
-        (View(0, 0.9), Grip.UNKNOWN),
-        (NOTHING_SEEN, Grip.UNKNOWN),
-    ],
+    [(View(0, 0.9), Grip.EMPTY), (NOTHING_SEEN, Grip.UNKNOWN), (View(80, 0.0), Grip.UNKNOWN)],
 )
-def test_a_picture_decides_what_fingers_and_weight_do_not(view: View, grip: Grip) -> None:
-    """Fingers that press while nothing weighs: jammed, or around something light."""
+def test_a_picture_may_decide_what_fingers_and_weight_do_not(view: View, grip: Grip) -> None:
+    """Fingers that press while nothing weighs: jammed, or around something that stands."""
     evidence = [
         of_fingers(PRESSING, 0.1, CONFIG),
-        of_weight(Weight(0.0, 0.25, 0.1)),
-        of_picture(view),
+        of_weight(Weight(0.0, 0.25, 0.1), raised=False),
+        of_picture(view, raised=False),
     ]
     assert weighed(evidence) is grip
+
+
+def test_what_is_seen_of_a_hand_that_was_not_raised_may_be_what_it_leans_on() -> None:
+    assert of_picture(View(200, 0.0), raised=False).odds == 0.0
+    assert of_picture(View(200, 0.0), raised=True).odds > 1.0
+    assert of_picture(View(0, 0.9), raised=False).odds < -3.0
 
 
 def test_nothing_known_is_no_answer() -> None:
@@ -79,20 +89,27 @@ def test_an_answer_takes_a_hundred_to_one(odds: list[float]) -> None:
     assert (grip is Grip.EMPTY) is (total <= -SURE)
 
 
-@given(st.floats(0.0, 20.0), st.floats(0.05, 1.0))
-def test_the_heavier_the_hand_the_likelier_it_holds_something(weight: float, sigma: float) -> None:
-    assert (
-        of_weight(Weight(weight + 0.5, sigma, 0.0)).odds
-        >= of_weight(Weight(weight, sigma, 0.0)).odds - 1e-9
-    )
+@given(st.floats(0.5, 15.0), st.floats(0.05, 0.4))
+def test_a_weight_speaks_for_something_and_none_against_it(weight: float, sigma: float) -> None:
+    some, none = (of_weight(Weight(w, sigma, 0.0), raised=False) for w in (4 * sigma + weight, 0.0))
+    assert some.odds > 0.0 > none.odds
 
 
-def test_a_hand_that_is_pushed_up_says_nothing() -> None:
-    assert of_weight(Weight(-8.0, 0.25, 0.1)).odds == 0.0
+@given(st.floats(-20.0, 20.0), st.floats(0.05, 1.0), st.booleans())
+def test_no_weight_alone_decides(weight: float, sigma: float, raised: bool) -> None:
+    """Something may hang on the hand."""
+    odds = of_weight(Weight(weight, sigma, 0.0), raised=raised).odds
+    assert math.isfinite(odds)
+    assert odds < 8.0
+
+
+def test_a_hand_that_is_pushed_up_says_little() -> None:
+    assert abs(of_weight(Weight(-8.0, 0.25, 0.1), raised=False).odds) < SURE
 
 
 def test_a_weight_is_as_sure_as_its_sensor() -> None:
-    assert abs(of_weight(Weight(0.0, 0.25, 0.6)).odds) < abs(of_weight(Weight(0.0, 0.25, 0.1)).odds)
+    vague, sure = (of_weight(Weight(0.0, 0.25, s), raised=True).odds for s in (0.6, 0.1))
+    assert abs(vague) < abs(sure)
 
 
 @pytest.mark.parametrize("effort", np.linspace(-3.0, 50.0, 12))

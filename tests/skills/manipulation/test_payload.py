@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from momantu_skills.manipulation.hand.between_pads import between_pads
 from momantu_skills.manipulation.scene.payload import BIAS, Payload, mean_weight
+from momantu_worlds.robots import fetch
 
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform, quaternion_from_axis_angle
@@ -110,14 +112,20 @@ def test_a_hand_whose_own_weight_is_measured_is_not_weighed_when_turned(
     assert (wrist.payload.weigh(wrist.robot) is not None) is told
 
 
-def test_a_robot_without_the_sensor_weighs_nothing() -> None:
+def test_a_hand_that_no_joint_raises_weighs_nothing() -> None:
     plain = small_robot()
     sensors = {n: s for n, s in plain.sensors.items() if s.kind != "wrench"}
     description = plain.model_copy(update={"sensors": sensors})
+    straight_up = dict.fromkeys(description.groups["arm"].joints, 0.0)
     payload = Payload(description, FrameBuffer(description.kinematics()))
-    robot = ScriptedRobot(description)
-    payload.update(robot, robot.state())
-    assert payload.weigh(robot) is None
+    robot = ScriptedRobot(description, joints=straight_up)
+    tree, frame = description.kinematics(), description.hand.frame
+    at = tree.base_from_frame(frame, straight_up).position
+    levers = [
+        abs(tree.base_from_frame(frame, {**straight_up, name: 0.01}).position[2] - at[2])
+        for name in straight_up
+    ]
+    assert (payload.weigh(robot) is None) is (math.hypot(*levers) < 0.001)
 
 
 @pytest.mark.parametrize("held", [True, False])
@@ -145,3 +153,83 @@ def test_a_picture_shows_what_is_between_the_pads(
     view = between_pads(scene_of(robot).scene, snapshot)
     assert (view.points >= 25) is held
     assert (view.through >= 0.5) is not held
+
+
+def test_a_hand_counts_as_raised_above_where_its_fingers_moved(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
+    robot = tabletop(can=None, pose="carry")
+    scene = scene_of(robot)
+
+    def later(lift: float, width: float) -> bool:
+        robot.gripper_width = width
+        robot.joints["torso_lift_joint"] += lift
+        robot.advance(0.3)
+        scene.frames.add_state(robot.state())
+        scene.update(robot, robot.time)
+        return scene.payload.raised
+
+    robot.joints["torso_lift_joint"] = 0.1
+    assert not later(0.0, 0.07)
+    assert not later(0.02, 0.07)
+    assert later(0.03, 0.07)
+    assert not later(0.0, 0.065), "the fingers moved"
+    assert not later(-0.1, 0.065)
+    assert later(0.05, 0.065), "from its lowest place"
+
+
+def without_wrist(description: Any) -> Any:
+    kept = {n: s for n, s in description.sensors.items() if s.kind != "wrench"}
+    return description.model_copy(update={"sensors": kept})
+
+
+@pytest.mark.parametrize("weight", [0.0, 0.5, 3.9])
+@pytest.mark.parametrize("pose", ["carry", "ready"])
+def test_without_a_sensor_at_the_wrist_the_joints_tell(weight: float, pose: str) -> None:
+    """By virtual work: joint i holds the weight with F dz/dq_i."""
+    description = without_wrist(fetch())
+    robot = ScriptedRobot(description, joints=description.named_poses[pose])
+    tree, frame = description.kinematics(), description.hand.frame
+    payload = Payload(description, FrameBuffer(tree))
+
+    def rise(name: str) -> float:
+        joints, step = dict(robot.joints), 1e-5
+        low = tree.base_from_frame(frame, joints).position[2]
+        joints[name] = joints.get(name, 0.0) + step
+        return float(tree.base_from_frame(frame, joints).position[2] - low) / step
+
+    def loaded(newtons: float) -> None:
+        state = robot.state()
+        robot.state = lambda: replace(  # type: ignore[method-assign]
+            state, efforts=frozen(np.array([newtons * rise(n) for n in state.names]))
+        )
+
+    loaded(0.0)
+    robot.gripper_width = 0.1
+    for _ in range(3):
+        payload.update(robot, replace(robot.state(), gripper_width=0.1))
+    loaded(weight)
+    measured = payload.weigh(robot)
+    assert measured is not None
+    assert measured.value == pytest.approx(weight, abs=0.02)
+    assert 0.1 < measured.noise < 0.8
+
+
+@pytest.mark.parametrize(("moves", "weighed"), [(False, True), (True, False)])
+def test_joints_that_shake_and_stay_where_they_are_stand_still(moves: bool, weighed: bool) -> None:
+    wrist = Wrist()
+    wrist.measure_empty()
+    plain, at = wrist.robot.state, 0.0
+    for _ in range(3):
+        at += 0.02 if moves else 0.0
+        wrist.robot.advance(0.05)
+        state = plain()
+        shaken = replace(
+            state,
+            velocities=frozen(np.full(len(state.names), 0.3)),
+            positions=frozen(np.asarray(state.positions) + at),
+        )
+        wrist.frames.add_state(shaken)
+        wrist.robot.state = lambda shaken=shaken: shaken  # type: ignore[method-assign]
+        wrist.payload.update(wrist.robot, shaken)
+    assert (wrist.payload.weigh(wrist.robot) is not None) is weighed

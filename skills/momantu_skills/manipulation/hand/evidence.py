@@ -2,6 +2,9 @@
 
 Each says by how much likelier its reading is with something in the hand than with nothing, as the
 natural logarithm of that ratio. The senses fail for different causes, so their logarithms add up.
+The probabilities are fitted to states of the hand that `benchmarks/hand_states.py` makes, each kind
+as often as the others: the share of k in n states for one of m readings is (k + 1/2) / (n + m/2),
+after Krichevsky and Trofimov (1981), "The performance of universal encoding".
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+from scipy.special import ndtr
 
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.hand.between_pads import View
@@ -20,23 +24,24 @@ from momantu_skills.manipulation.scene.payload import OPEN, Weight
 
 SURE = math.log(100.0)
 """Sum from which the answer is given: a hundred to one."""
-CLEAR = 4.0
-"""What a sense must say to be in no doubt: 55 to 1."""
-FINGERS = 5.0
-"""What clear fingers say, 150 to 1: fingers that press are seldom jammed, and fingers that do not
-seldom carry something that hangs on them."""
+SHUT, OPENED, FREE, PRESSING = (0.001, 0.26), (0.001, 0.11), (0.001, 0.22), (0.996, 0.40)
+"""How probable each reading of the fingers is with something in the hand, and with nothing."""
+SEEN, THROUGH = (0.14, 0.016), (0.001, 0.12)
+"""The same of a picture that shows something between the pads, and of one that shows through."""
+LEANING = (0.19, 0.016)
+"""Share of states in which something under the hand carries what it holds, or pushes it up if it is
+empty."""
+HANGING = 0.004
+"""Share of states in which something hangs on an empty hand."""
 NOISE = 1.0 / math.sqrt(RECENT)
 """Standard deviation of the mean closing force, N."""
 LIGHTEST, HEAVIEST = 0.3, 20.0
 """Range of the weights that are expected in a hand, N, each factor of two as likely."""
-WEIGHT = 6.0
-"""The most that a weight says: a hand may also carry what hangs on it, or lean on something."""
-PICTURE = 4.0
-"""What a clear picture says, 55 to 1: hand and camera are where they are believed to be within 1 cm
-but for a fault."""
+RAISED = 0.02
+"""The share of LEANING that is left in a hand that was raised since its fingers moved."""
 SOME = 25
 """Points between the pads that prove something: 1 cm2 at 0.6 m."""
-THROUGH = 0.5
+EMPTY_FROM = 0.5
 """Share of the space between the pads that a picture shows to be empty if it is."""
 
 
@@ -57,11 +62,6 @@ class Evidence:
     text: str
 
 
-def clear(evidence: Sequence[Evidence]) -> bool:
-    """Whether every sense says the same, and none of them is in doubt."""
-    return min(each.odds for each in evidence) >= CLEAR or max(e.odds for e in evidence) <= -CLEAR
-
-
 def weighed(evidence: Sequence[Evidence]) -> Grip:
     """What all evidence together says."""
     total = sum(each.odds for each in evidence)
@@ -70,47 +70,75 @@ def weighed(evidence: Sequence[Evidence]) -> Grip:
     return Grip.HELD if total > 0.0 else Grip.EMPTY
 
 
-def of_fingers(fingers: Fingers, widest: float, config: SceneConfig) -> Evidence:
-    """Fingers that press on something are stopped by it; shut ones hold nothing.
+def agree(evidence: Sequence[Evidence]) -> bool:
+    """Whether no sense speaks against another one."""
+    return min(each.odds for each in evidence) >= 0.0 or max(e.odds for e in evidence) <= 0.0
 
-    widest: of the hand, m. Fingers that are open so far and press on nothing hold nothing, whatever
-    the weight.
+
+def of_fingers(fingers: Fingers, widest: float, config: SceneConfig) -> Evidence:
+    """Fingers that press are stopped by something, or jammed; shut ones hold little.
+
+    widest: of the hand, m. Whether they press is as sure as their force is above or below the
+    least one.
     """
+    if math.isnan(fingers.width):
+        return Evidence("fingers", 0.0, "the fingers have not been read")
     text = (
         f"the fingers are {fingers.width * 1000:.0f} mm open and press with {fingers.effort:.0f} N"
     )
-    if math.isnan(fingers.width):
-        return Evidence("fingers", 0.0, "the fingers have not been read")
     if fingers.width < config.closed_width:
-        return Evidence("fingers", -FINGERS, text)
-    if fingers.width > OPEN * widest and fingers.effort < config.least_effort:
-        return Evidence("fingers", -(WEIGHT + FINGERS), text)
-    off = (fingers.effort - config.least_effort) / NOISE
-    return Evidence("fingers", float(np.clip(off * FINGERS / 2, -FINGERS, FINGERS)), text)
+        return Evidence("fingers", _odds(*SHUT), text)
+    press = 0.5 * math.erfc((config.least_effort - fingers.effort) / NOISE / math.sqrt(2.0))
+    idle = OPENED if fingers.width > OPEN * widest else FREE
+    pairs = zip(PRESSING, idle, strict=True)
+    return Evidence("fingers", _odds(*(press * p + (1.0 - press) * f for p, f in pairs)), text)
 
 
-def of_weight(measured: Weight) -> Evidence:
+def of_weight(measured: Weight, *, raised: bool) -> Evidence:
     """A weight in the hand.
 
-    A hand that is pushed up leans on something, and its weight says nothing.
+    What the hand holds shows its weight, unless something carries it: in part, or wholly. An empty
+    hand shows none, unless it leans on something or something hangs on it. raised: since the
+    fingers moved, so that nothing that was under the hand carries it.
     """
     weight, sigma = measured.value, measured.sigma
     text = f"the hand carries {weight:.1f} N"
-    if weight < -4.0 * sigma:
-        return Evidence("weight", 0.0, f"something pushes the hand up by {-weight:.1f} N")
-    weight = min(weight, 8.0 * sigma)  # beyond, nothing changes
-    held = np.geomspace(LIGHTEST, HEAVIEST, 200)
-    with_it = float(np.mean(np.exp(-0.5 * ((weight - held) / sigma) ** 2)))
-    without = math.exp(-0.5 * (weight / sigma) ** 2)
-    odds = math.log(max(with_it, 1e-12)) - math.log(max(without, 1e-12))
-    return Evidence("weight", float(np.clip(odds, -WEIGHT, WEIGHT)), text)
+    weight = min(max(weight, -HEAVIEST), HEAVIEST)
+    nothing = math.exp(-0.5 * (weight / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
+    below = np.diff(ndtr((weight - EDGES) / sigma)) * -1.0  # probability of each interval
+    full, in_part, hung = (float(below @ density) for density in (FULL, IN_PART, HUNG))
+    pushed = float(ndtr(-weight / sigma)) / HEAVIEST
+    held, empty = (share * (RAISED if raised else 1.0) for share in LEANING)
+    with_it = (1.0 - held) * full + held * (nothing + in_part + pushed) / 3
+    without = (1.0 - empty - HANGING) * nothing + empty * pushed + HANGING * hung
+    return Evidence("weight", _odds(with_it, without), text)
 
 
-def of_picture(view: View) -> Evidence:
-    """What a depth picture shows between the pads, or through between them."""
+EDGES = np.concatenate([[0.0], np.geomspace(LIGHTEST, HEAVIEST, 60)])
+"""Ends of intervals of weights, N."""
+_MIDDLES = (EDGES[1:] + EDGES[:-1]) / 2
+_SPAN = math.log(HEAVIEST / LIGHTEST)
+FULL = np.where(_MIDDLES > LIGHTEST, 1.0 / (_MIDDLES * _SPAN), 0.0)
+"""Density of the weight of what is held, by interval, 1/N: its logarithm is uniform."""
+IN_PART = (1.0 / np.maximum(_MIDDLES, LIGHTEST) - 1.0 / HEAVIEST) / _SPAN
+"""The same if something carries a part of it, a share that is uniform."""
+HUNG = np.full(len(_MIDDLES), 1.0 / HEAVIEST)
+"""The same of what hangs on an empty hand."""
+
+
+def _odds(held: float, empty: float) -> float:
+    return math.log(held) - math.log(empty)
+
+
+def of_picture(view: View, *, raised: bool) -> Evidence:
+    """What a depth picture shows between the pads, or through between them.
+
+    raised: as for a weight. Before, what is seen may belong to what the hand leans on.
+    """
     if view.points >= SOME:
-        return Evidence("picture", PICTURE, f"{view.points} points are seen between the pads")
-    if view.through >= THROUGH:
+        text = f"{view.points} points are seen between the pads"
+        return Evidence("picture", _odds(*SEEN) if raised else 0.0, text)
+    if view.through >= EMPTY_FROM:
         text = f"{view.through:.0%} of the space between the pads is seen to be empty"
-        return Evidence("picture", -PICTURE, text)
+        return Evidence("picture", _odds(*THROUGH), text)
     return Evidence("picture", 0.0, "the picture does not show the space between the pads")

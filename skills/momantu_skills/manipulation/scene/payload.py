@@ -1,4 +1,4 @@
-"""The weight in the hand: the load on the wrist beside that of the empty hand."""
+"""The weight in the hand: the load on the wrist or the joints, beside that of the empty hand."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ OPEN = 0.95
 AT_REST = 0.02
 """Fastest joint, rad/s or m/s, and base, at which the load is weight alone. A hand of 1.5 kg that
 is accelerated by 1 m/s2 adds 1.5 N."""
+SHAKING = 0.04
+"""Least time between two states of which the positions tell whether joints stand still, s."""
 HEAVY = 3.0
 """Load of the empty hand above which the sensor measures the hand's own weight too, N. The load
 then depends on how the hand is turned."""
@@ -35,8 +37,17 @@ BIAS = 0.6
 """Standard deviation of the load while the empty hand has not been measured, N, per axis."""
 NOISE = 0.25
 """Standard deviation of one reading, N."""
+JOINT_NOISE = 0.3
+"""Standard deviation of a joint's measured effort, Nm or N."""
+LEAST_LEVER = 0.1
+"""Least lever of all joints together by which they tell a weight, m."""
 MEDIAN = 1.25
 """Standard deviation of a median, relative to that of a mean."""
+RAISED = 0.03
+"""Height of the hand above its lowest place since the fingers moved, from which nothing under it
+carries what it holds any more, m."""
+MOVED = 0.0025
+"""Change of the opening that means that the fingers have moved, m: six sigma of its noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,59 +81,127 @@ def wrist_sensor(description: RobotDescription) -> str | None:
 
 
 class Payload:
-    """Learns the load of the empty hand while the hand is open, and weighs what it holds."""
+    """Learns the load of the empty hand while the hand is open, and weighs what it holds.
+
+    The load is measured at the wrist. A robot without a sensor there tells it by the efforts of its
+    joints: joint i holds a weight F with J_i F, where J_i is the height that the hand gains per
+    motion of the joint, so F = sum(J_i e_i) / sum(J_i^2) by least squares.
+    """
 
     def __init__(self, description: RobotDescription, frames: FrameBuffer) -> None:
         self._description, self._frames = description, frames
         self._empty: deque[Array] = deque(maxlen=EMPTY)
         self._up: Array | None = None
         self._measured = -math.inf
+        self._width, self._followed = math.nan, -math.inf
+        self._states: deque[RobotState] = deque(maxlen=2)
+        self._lowest = self._height = math.inf
+
+    @property
+    def raised(self) -> bool:
+        """Whether the hand was raised since its fingers moved: nothing can carry what it holds."""
+        return self._height > self._lowest + RAISED
 
     def update(self, robot: Robot, state: RobotState) -> None:
-        """Measure the empty hand if it is open and at rest."""
+        """Note the hand's height; measure the empty hand if it is open and at rest."""
         effector = self._description.end_effector
-        if effector is None or not at_rest(state):
+        if effector is None:
             return
-        soon = state.stamp < self._measured + APART
-        if soon or state.gripper_width < OPEN * effector.max_width:
+        if not self._states or state.stamp > self._states[-1].stamp:
+            self._states.append(state)
+        open_ = state.gripper_width >= OPEN * effector.max_width
+        self._follow(state, effector.frame, open_)
+        if not at_rest(state) or not open_ or state.stamp < self._measured + APART:
             return
         load = self._load(robot)
         if load is not None:
-            self._empty.append(load[0])
-            self._up, self._measured = load[1], state.stamp
+            self._empty.append(load.force)
+            self._up, self._measured = load.up, state.stamp
+
+    def _follow(self, state: RobotState, frame: str, open_: bool) -> None:
+        """Note how high the hand is above its lowest place since the fingers moved."""
+        moved = not abs(state.gripper_width - self._width) <= MOVED
+        if not moved and (open_ or state.stamp < self._followed + APART):
+            return
+        base_from_hand = self._frames.kinematics.base_from_frame(frame, state.joints())
+        self._height = float((state.odom_from_base @ base_from_hand).position[2])
+        self._lowest = self._height if moved else min(self._lowest, self._height)
+        self._width = state.gripper_width if moved else self._width
+        self._followed = state.stamp
 
     def weigh(self, robot: Robot) -> Weight | None:
         """Weight in the hand now.
 
         None without a sensor, in motion, or where the empty hand's load is not known well enough.
         """
-        if not at_rest(robot.state()):
+        if not self._rests(robot.state()):
             return None
         load = self._load(robot)
         if load is None:
             return None
-        force, up = load
         if self._up is None:
-            return Weight(-float(force @ up), NOISE, BIAS)
+            return Weight(-float(load.force @ load.up), load.noise, BIAS)
         empty = np.median(self._empty, axis=0)
-        turned = math.acos(float(np.clip(self._up @ up, -1.0, 1.0)))
+        turned = math.acos(float(np.clip(self._up @ load.up, -1.0, 1.0)))
         if np.linalg.norm(empty) > HEAVY and turned > TURNED:
             return None
-        shared = MEDIAN * NOISE / math.sqrt(len(self._empty))
-        return Weight(-float((force - empty) @ up), NOISE, shared)
+        shared = MEDIAN * load.noise / math.sqrt(len(self._empty))
+        return Weight(-float((load.force - empty) @ load.up), load.noise, shared)
 
-    def _load(self, robot: Robot) -> tuple[Array, Array] | None:
-        """The force (3,) and the upward direction (3,), both in the sensor's frame."""
+    def _rests(self, state: RobotState) -> bool:
+        """Whether the robot stands still: by its speeds, or by where its joints were before.
+
+        What is gripped may shake joints that stay where they are.
+        """
+        if at_rest(state):
+            return True
+        before = next((s for s in self._states if s.stamp < state.stamp - SHAKING), None)
+        if before is None or max(abs(state.linear), abs(state.angular)) >= AT_REST:
+            return False
+        moved = float(np.abs(state.positions - before.positions).max(initial=0.0))
+        return moved < AT_REST * (state.stamp - before.stamp)
+
+    def _load(self, robot: Robot) -> _Load | None:
         name = wrist_sensor(robot.description)
         if name is None:
-            return None
+            return self._joint_load(robot.state())
         try:
             reading = robot.read(name)
             rotation = self._frames.lookup(ODOM, reading.frame, reading.stamp).rotation
         except Failure:
             return None
         assert isinstance(reading, WrenchReading)
-        return reading.force, rotation[2]
+        return _Load(reading.force, rotation[2], NOISE)
+
+    def _joint_load(self, state: RobotState) -> _Load | None:
+        """By the efforts of the joints that raise the hand; None if none does."""
+        joints, tree = state.joints(), self._frames.kinematics
+        frame = self._description.hand.frame
+        hand = tree.base_from_frame(frame, joints).position
+        rises, efforts, place = [], [], np.eye(4)
+        for joint in tree.chain(frame):
+            at = place @ joint.parent_from_joint.matrix
+            if joint.name in joints:
+                axis = at[:3, :3] @ np.asarray(joint.axis)
+                slides = joint.kind == "prismatic"
+                rises.append((axis if slides else np.cross(axis, hand - at[:3, 3]))[2])
+                efforts.append(state.efforts[state.names.index(joint.name)])
+            place = place @ joint.transform(joint.position(joints))
+        lever = float(np.dot(rises, rises))
+        if lever < LEAST_LEVER**2:
+            return None
+        up = np.array([0.0, 0.0, 1.0])
+        weight = float(np.dot(rises, efforts)) / lever
+        return _Load(-weight * up, up, JOINT_NOISE / math.sqrt(lever))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Load:
+    """A load on the hand. force: (3,), N. up: (3,) upwards, its frame. noise: of the force, N."""
+
+    force: Array
+    up: Array
+    noise: float
 
 
 def at_rest(state: RobotState) -> bool:
