@@ -16,18 +16,13 @@ from momantu_bt.messages import CameraImage, RobotState
 from momantu_bt.robot import Robot, read_camera
 from momantu_bt.skill import Compute, Failure, In, Out, Run, Skill, compute
 from momantu_bt.symptom import Symptom
+from momantu_skills.perception.camera.standing import until_standing
 
 with lazily():
     from momantu_skills.perception.tags import detector, recognise, view_lines
 
 BUDGET = 0.05
 """Time allowed for searching one picture, s."""
-STILL = 0.01
-"""A joint or the base stands if it moves more slowly, rad/s or m/s."""
-STANDING = 0.3
-"""How long all must stand before the picture is taken, s."""
-PATIENCE = 5.0
-"""How long to wait for that, s."""
 Shown: TypeAlias = tuple[list[tuple[int, float, Array]], Transform | None]
 """Tags with their edges, m, and corners (4, 2), px; and the target's pose, if one is asked."""
 
@@ -63,13 +58,7 @@ class RecordView(Skill):
 
     def run(self, robot: Robot) -> Run:
         """Wait until the robot stands, take a picture, add the line."""
-        begun = rested = robot.state().stamp
-        while (now := robot.state()).stamp - rested < STANDING:
-            if _moves(now):
-                rested = now.stamp
-            if now.stamp - begun > PATIENCE:
-                raise Failure("STILL_MOVING", f"the robot still moves after {PATIENCE:g} s")
-            yield "waiting"
+        yield from until_standing(robot)
         image, state = read_camera(robot), robot.state()
         tags, poses = yield from (self._any(image) if self.target is None else self._its(image))
         line = _line(robot.description.camera()[0], image, state, tags)
@@ -108,11 +97,6 @@ class RecordView(Skill):
         used = sorted(found.pose.used, key=lambda each: each.plate.tag_id)
         tags = [(each.plate.tag_id, each.plate.edge, each.corners) for each in used]
         return tags, found.pose.camera_from_bundle
-
-
-def _moves(state: RobotState) -> bool:
-    speeds = np.abs([*state.velocities, state.linear, state.angular])
-    return bool(speeds.max() > STILL)
 
 
 def _line(
