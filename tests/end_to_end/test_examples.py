@@ -33,6 +33,9 @@ OUTPUTS: dict[str, Any] = {
     "tag_covariance": (0.0,) * 36,
     "seen": 2,
     "turned": 0.5,
+    "pictures": 1,
+    "covered": 0.5,
+    "enough": False,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
 }

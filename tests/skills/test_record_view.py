@@ -72,5 +72,5 @@ def test_views_of_another_run_are_kept(record: Record, tmp_path: Path) -> None:
 def test_a_robot_that_does_not_come_to_rest_is_STILL_MOVING(
     record: Record, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("momantu_skills.record_view.STILL", -1.0)
+    monkeypatch.setattr("momantu_skills.perception.camera.standing.STILL", -1.0)
     assert record([card(3, 1.0, 0.1)]).code == "STILL_MOVING"
