@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
 from momantu_bt.service import HeldObject
-from momantu_bt.skill import In, Needs, Run, Skill, compute
+from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
 from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
@@ -25,7 +26,7 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
-    from momantu_skills.manipulation.hand import rims, verification
+    from momantu_skills.manipulation.hand import evidence, rims, verification, weighing
     from momantu_skills.manipulation.model import collision, hulls
 
 
@@ -47,6 +48,7 @@ class Place(Skill):
     also_called = ("put", "put_down", "set_down", "drop_off", "place_object", "put_object")
     failures = {
         "NOTHING_HELD": "the hand holds nothing",
+        "HELD_UNKNOWN": "the hand holds something, and no pick has said what it is",
         "STALE_POSE": "the surface was measured too long ago, or before the hand last touched it",
         "NO_PLACE_POSE": "the hand cannot set it down upright on any of the spots from here",
         "NO_PLAN": "no path leads above a spot",
@@ -78,7 +80,7 @@ class Place(Skill):
     def run(self, robot: Robot) -> Run:
         """Run all steps; each step is a method below."""
         arm = Arm(self, robot, self.planning_scene)
-        held = self._check_start(arm)
+        held = yield from self._check_start(arm)
         yield from arm.settle()
         self.planning_scene.support(self.plane)
         yield from self._look(arm, self.spots[0].position)
@@ -104,16 +106,31 @@ class Place(Skill):
             return None
         return SetDown(self._spot, BESIDE)
 
-    def _check_start(self, arm: Arm) -> HeldObject:
+    def _check_start(self, arm: Arm) -> Generator[str | Compute, Any, HeldObject]:
         held: HeldObject | None = self.planning_scene.held
         if held is None:
-            raise Failure("NOTHING_HELD", "there is nothing in the hand to set down")
+            raise (yield from self._not_known(arm))
         last, now = self.planning_scene.last_contact, self.clock.now()
         check_fresh(self.plane.pose, "surface", now, last, arm.hand)
         if not self.spots:
             raise Failure("NO_PLACE_POSE", "the list of free spots is empty", spots=0)
         check_fresh(self.spots[0], "free spot", now, last, arm.hand)
         return held
+
+    def _not_known(self, arm: Arm) -> Generator[str | Compute, Any, Failure]:
+        """The failure where no pick has reported what the hand holds, as its senses have it."""
+        found = yield from weighing.weigh(self, arm.robot, self.planning_scene)
+        said, data = weighing.told(found), weighing.odds(found)
+        if evidence.weighed(found) is not evidence.Grip.HELD:
+            return Failure(
+                "NOTHING_HELD", f"there is nothing in the hand to set down: {said}", **data
+            )
+        return Failure(
+            "HELD_UNKNOWN",
+            "the hand holds something, but no pick has reported what it is and how it is held: "
+            f"{said}; let it go with release where it may fall a little, then detect and pick it",
+            **data,
+        )
 
     def _look(self, arm: Arm, point: Array, around: Sequence[Array] = ()) -> Run:
         """Take a picture of the surroundings of a point, with the camera turned as far as possible.

@@ -92,6 +92,22 @@ def test_nothing_held(tabletop: type[Tabletop], scene_of: SceneOf) -> None:
     assert place(robot, scene_of(robot)).code == "NOTHING_HELD"
 
 
+def test_what_no_pick_has_reported_is_held_all_the_same(
+    tabletop: type[Tabletop], scene_of: SceneOf
+) -> None:
+    robot = tabletop(pose="carry")
+    robot.hold(HAND_FROM_CAN)
+    scene = scene_of(robot)
+    for _ in range(10):
+        robot.advance(0.05)
+        scene.update(robot, robot.time)
+    assert scene.held is None
+    result = place(robot, scene)
+    assert result.code == "HELD_UNKNOWN"
+    assert "the fingers are 70 mm open" in result.failure.message
+    assert result.failure.data["fingers"] > 0.0
+
+
 def test_an_old_surface_is_stale(holding: Carrying) -> None:
     robot, scene = holding()
     assert place(robot, scene, top=plane(stamp=-100.0)).code == "STALE_POSE"
