@@ -21,6 +21,7 @@ from momantu_worlds.sapien.build.robot_model import RobotModel
 from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.drives.base import BaseDrive
 from momantu_worlds.sapien.drives.fingers import Hanging, Tips
+from momantu_worlds.sapien.drives.followers import Followers
 from momantu_worlds.sapien.drives.gripper import GripperDrive
 from momantu_worlds.sapien.drives.joints import JointDrive
 from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry, prismatic_joints
@@ -88,6 +89,7 @@ class SimulatedRobot:
             for drive in self.joint_drives.values()
         ]
         self.gripper = None if hand is None else self._gripper_drive(simulation, hand)
+        self._followers = Followers(model.mimics.values())
         self._place(start, pose)
 
     @property
@@ -166,6 +168,7 @@ class SimulatedRobot:
             drive.apply(index)
         if self.gripper is not None:
             self.gripper.apply(positions)
+        self._followers.follow(positions)
 
     def end_tick(self) -> None:
         """Update odometry with the tick's motion; the clock shows the end of the tick already."""
@@ -253,6 +256,8 @@ class SimulatedRobot:
         positions[self._base_columns] = (start.x, start.y, start.yaw)
         for name, value in pose.items():
             positions[self._model.index[name]] = value
+        for name, follower in self._model.mimics.items():
+            positions[self._model.index[name]] = follower.where(positions)
         effector = self._description.end_effector
         opened = {} if effector is None else effector.positions(effector.max_width)
         for name, value in opened.items():

@@ -17,6 +17,7 @@ from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, ignore_bits
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.fingers import Finger, couple, fingers_of
+from momantu_worlds.sapien.drives.followers import Follower, mimicking
 from momantu_worlds.sapien.drives.gains import Gains, arm_gains
 
 MANY_TURNS = 1e3
@@ -32,7 +33,8 @@ class RobotModel:
     """A robot in the physics scene.
 
     joints: active joints by name. index: their index in qpos. links: by name. gains: of each arm
-    and head joint, and of finger tips. fingers: the gripper's, by joint.
+    and head joint, and of finger tips. fingers: the gripper's, by joint. mimics: joints that mimic
+    others, without the gripper's.
     """
 
     articulation: Any
@@ -41,6 +43,7 @@ class RobotModel:
     links: dict[str, Any]
     gains: Mapping[str, Gains]
     fingers: Mapping[str, Finger]
+    mimics: Mapping[str, Follower]
 
     def positions(self) -> Array:
         """All true joint positions now (dof,)."""
@@ -78,13 +81,15 @@ def build_robot(
     for link in articulation.get_links():
         link.set_disable_gravity(True)
     joints = {joint.name: joint for joint in articulation.get_active_joints()}
+    index = {name: i for i, name in enumerate(joints)}
     model = RobotModel(
         articulation,
         joints,
-        {name: i for i, name in enumerate(joints)},
+        index,
         {link.name: link for link in articulation.get_links()},
         arm_gains(description, simulation, physics),
         fingers_of(description, simulation, joints, physics),
+        mimicking(description, joints, index, physics),
     )
     _set_drives(model, description, simulation, physics)
     couple(articulation, model.fingers, physics)
@@ -110,8 +115,7 @@ def _parse(
         loader.set_link_material(link, friction, friction, 0.0)
     articulations, _, _ = loader.parse(str(simulation.urdf or description.urdf), srdf_file="")
     builder = articulations[0]
-    own = {} if description.end_effector is None else description.hand.opening
-    builder.mimic_joint_records = [m for m in builder.mimic_joint_records if m.joint not in own]
+    builder.mimic_joint_records = []  # drives move them: tendons pull the leader along
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
         if link.name in simulation.no_collision_links:

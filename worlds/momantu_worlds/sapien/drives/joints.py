@@ -108,7 +108,8 @@ class JointDrive:
 
     def begin_tick(self, now: float, true_positions: Array) -> None:
         """Compute the targets for the physics steps of the next tick; `true_positions` (n,) now."""
-        if bool(np.any(np.abs(self.position - true_positions) > self._tolerance)):
+        led = self._last_command > -math.inf  # joints that nobody moves hold their place
+        if led and bool(np.any(np.abs(self.position - true_positions) > self._tolerance)):
             self._give_way(true_positions)
         if now - self._last_command > WATCHDOG:
             self.stop()

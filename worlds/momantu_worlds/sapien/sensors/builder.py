@@ -71,7 +71,19 @@ class SensorBuilder:
             return Laser(
                 _pose_source(link), name, spec, self._rays, self.moving, seed, config.laser
             )
-        return Wrench(self.model.articulation, link, name, spec, seed, config.wrench)
+        bearing = self.model.links[self._bearing(spec.frame)]
+        return Wrench(self.model.articulation, bearing, link, name, spec, seed, config.wrench)
+
+    def _bearing(self, frame: str) -> str:
+        """The link whose joint bears the hand and a sensor's frame, which may only hang beside."""
+        above = {joint.child: joint.parent for joint in self.description.kinematics().joints()}
+        hand = self.description.end_effector
+        chain = [frame if hand is None else hand.frame]
+        while chain[-1] in above:
+            chain.append(above[chain[-1]])
+        while frame not in chain:
+            frame = above[frame]
+        return frame
 
     @cached_property
     def _rays(self) -> Triangles:

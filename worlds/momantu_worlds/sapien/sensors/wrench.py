@@ -19,14 +19,17 @@ class Wrench:
     def __init__(
         self,
         articulation: Any,
+        bearing: Any,
         link: Any,
         name: str,
         sensor: WristWrench,
         seed: int,
         errors: WrenchErrors,
     ) -> None:
-        self._articulation, self._index = articulation, link.get_index()
-        self._link_from_joint = matrix_from_quaternion(link.get_joint().get_pose_in_child().q)
+        """bearing: the link whose joint is measured. link: that of the sensor, often the same."""
+        self._articulation, self._index = articulation, bearing.get_index()
+        self._bearing, self._link = bearing, link
+        self._link_from_joint = matrix_from_quaternion(bearing.get_joint().get_pose_in_child().q)
         self._name, self._sensor, self._seed, self._errors = name, sensor, seed, errors
         self._sum = np.zeros(6)
         self._count = 0
@@ -61,4 +64,11 @@ class Wrench:
         The joint carries the hand, so the load on it is the negative of the reaction.
         """
         mean = -self._sum / max(self._count, 1)
-        return self._link_from_joint @ mean[:3], self._link_from_joint @ mean[3:]
+        force, torque = self._link_from_joint @ mean[:3], self._link_from_joint @ mean[3:]
+        if self._link is self._bearing:
+            return force, torque
+        between = self._link.get_entity_pose().inv() * self._bearing.get_entity_pose()
+        rotation = matrix_from_quaternion(between.q)
+        force = rotation @ force
+        joint = between.p + rotation @ self._bearing.get_joint().get_pose_in_child().p
+        return force, rotation @ torque + np.cross(joint, force)
