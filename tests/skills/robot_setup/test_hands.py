@@ -292,3 +292,24 @@ def test_joints_of_fingers_are_no_joints_of_an_arm() -> None:
     limbs = find_limbs(body, (), None, ())
     assert limbs.arm is not None
     assert limbs.arm.joints == tuple(f"j{i}" for i in range(5))
+
+
+def test_a_motor_beside_the_fingers_leads_them_and_their_springs_stay() -> None:
+    """The motor's link has no shape; each finger is a driven piece, and on a spring the tip."""
+    follow = '<mimic joint="motor"/>'
+    free = 'lower="0" upper="0.7" velocity="1" effort="5"'
+    parts = [link("dial", mass=0.1), joint("motor", "palm", "dial", limit=free)]
+    for side, out in (("l", 0.03), ("r", -0.03)):
+        axis = "-1 0 0" if out > 0 else "1 0 0"
+        parts += [
+            link(f"{side}f", box(0.02, 0.01, 0.05), "0 0 0.025"),
+            link(f"{side}t", box(0.02, 0.01, 0.05), f"0 {-0.8 * out} 0.025"),
+            joint(f"{side}h", "palm", f"{side}f", f"0 {out} 0.07", axis, limit=free, extra=follow),
+            joint(f"{side}s", f"{side}f", f"{side}t", "0 0 0.05", axis, limit=free),
+        ]
+    body = body_of(*palm(0.06), *parts)
+    (hand,) = find_hands(body)
+    assert set(hand.leaders) == {"motor", "lh", "rh"}
+    limbs = find_limbs(body, (hand,), None, ())
+    assert {"ls", "rs"} <= set(limbs.rest)
+    assert "motor" not in limbs.rest

@@ -77,6 +77,34 @@ def test_casters_beside_fixed_wheels_do_not_drive_sideways() -> None:
     assert driving(*steered(2)).kind is BaseKind.DIFFERENTIAL
 
 
+def pair(on: str) -> list[str]:
+    return [part for y in (0.2, -0.2) for part in wheel(f"w{y > 0}", on, 0.1, y, 0.0, 0.0)]
+
+
+def test_two_wheels_on_a_turntable_drive_sideways() -> None:
+    turns = joint("turn", "base_link", "table", "0 0 0.1", kind="continuous")
+    found = driving(link("table"), turns, *pair("table"))
+    assert (found.kind, found.measured) == (BaseKind.OMNIDIRECTIONAL, True)
+    still = joint("turn", "base_link", "table", "0 0 0.1", kind="fixed")
+    assert driving(link("table"), still, *pair("table")).kind is BaseKind.DIFFERENTIAL
+
+
+def test_a_ball_that_rolls_about_three_axes_is_a_wheel() -> None:
+    ball = link("ball", '<sphere radius="0.05"/>')
+    parts = [link("a"), link("b"), ball]
+    for name, on, axis in (
+        ("a", "base_link", "1 0 0"),
+        ("b", "a", "0 1 0"),
+        ("ball", "b", "0 0 1"),
+    ):
+        at = "0.2 0 0.05" if name == "a" else "0 0 0"
+        parts.append(joint(f"{name}_joint", on, name, at, axis, "continuous"))
+    body = body_of(CHASSIS, *parts, *wheel("w", "base_link", -0.2, 0.0))
+    stand = find_stand(body)
+    assert {"ball", "w"} <= set(stand.wheels)
+    assert {"ball", "w"} <= set(stand.grounded)
+
+
 @pytest.mark.parametrize(
     ("parts", "said"),
     [

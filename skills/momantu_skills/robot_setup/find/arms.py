@@ -49,9 +49,10 @@ def find_limbs(
     if not arms:
         arms = _bare_arm(body, wheels, draft)
     taken = {name for arm in arms for name in arm.joints}
-    taken |= {name for hand in hands for name in _inside(body, hand)}
-    head = _head(body, camera, taken)
+    fingers = {name for hand in hands for name in _inside(body, hand)}
+    head = _head(body, camera, taken | fingers)
     taken |= set(head.joints) if head else set()
+    taken |= {name for hand in hands for name in hand.leaders}
     rolling = {name for name in body.index if body.skeleton.joints[name].child in wheels}
     rest = tuple(name for name in body.free_joints if name not in taken | rolling)
     if rest:

@@ -159,9 +159,12 @@ def _rolls(body: Body, joint: SetupJoint, floor: float) -> bool:
     size = np.ptp(corners, axis=0).max()
     if corners[:, 2].min() > floor + ON_FLOOR or size > WHEEL:
         return False
-    last = [j for j in turning if j.endless][-1]
-    base_from_child = body.link_poses({})[last.child]
-    axis = base_from_child[:3, :3] @ np.array(last.axis)
+    return any(_level(body, j) for j in turning if j.endless)
+
+
+def _level(body: Body, joint: SetupJoint) -> bool:
+    """Whether a joint's axis is level; one of the three of a ball is."""
+    axis = body.link_poses({})[joint.child][:3, :3] @ np.array(joint.axis)
     return bool(abs(axis[2]) < LEVEL * np.linalg.norm(axis))
 
 

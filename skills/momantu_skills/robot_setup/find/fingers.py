@@ -121,14 +121,26 @@ def _branch(body: Body, joint: SetupJoint) -> Branch:
     return Branch(joint.name, links, tip)
 
 
-def _joints_of(body: Body, branches: tuple[Branch, ...]) -> list[str]:
-    """The fingers' joints that follow no other."""
-    links = {link for branch in branches for link in branch.links}
-    return [name for name in body.free_joints if body.skeleton.joints[name].child in links]
+def _joints_of(body: Body, link: str, branches: tuple[Branch, ...]) -> list[str]:
+    """The free joints that move the fingers of a palm.
+
+    A joint that moves every finger, itself or by those that mimic it, is the hand's motor. Beside
+    one, other free joints of the fingers are springs, which stay where they are.
+    """
+    joints, below = body.skeleton.joints, set(body.skeleton.subtree(link))
+    moved = dict[str, set[str]]()
+    for branch in branches:
+        for joint in joints.values():
+            name = joint.name if joint.mimic is None else joint.mimic.leader
+            if joint.child in branch.links and name in body.free_joints:
+                moved.setdefault(name, set()).add(branch.joint)
+    moved = {name: them for name, them in moved.items() if joints[name].child in below}
+    motors = [name for name, them in moved.items() if len(them) == len(branches)]
+    return [name for name in body.free_joints if name in (motors or moved)]
 
 
 def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None:
-    joints = _joints_of(body, branches)
+    joints = _joints_of(body, link, branches)
     ranges = {name: _span(body, name) for name in joints}
     middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
 
@@ -285,7 +297,9 @@ def _with_followers(
         if joint.mimic is not None and joint.mimic.leader in leaders and name in body.index:
             a, b = leaders[joint.mimic.leader]
             ratio, offset = joint.mimic.multiplier, joint.mimic.offset
-            every[name] = (ratio * a + offset, ratio * b + offset)
+            low, high = joint.range if joint.kind != "continuous" else (-np.inf, np.inf)
+            a, b = (min(max(ratio * each + offset, low), high) for each in (a, b))
+            every[name] = (a, b)
     return every
 
 

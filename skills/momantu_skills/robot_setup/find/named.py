@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -32,6 +32,13 @@ RAISED = (0.3, 0.5, 0.7)
 """Shares of a lift's range that are tried where the arm cannot be folded with it down."""
 FAR_OUT = 0.1
 """How far out of the footprint a folded arm may reach before a raised lift is tried, m."""
+OUT, BESIDE = 2.0, 5.0
+"""Cost of an arm that leaves the footprint, per m, where 1 is an arm that fills the picture: while
+the robot drives, and beside a table."""
+GLIMPSE = 0.02
+"""Share of the arm's corners that may be in the picture without being in the way."""
+LEVEL, DRAWS = 800, 20
+"""Postures with a level hand that are enough to choose from, and the most draws of targets."""
 DIGITS = 3
 """Decimals of a pose: a thousandth of a radian or a millimetre is enough for a draft."""
 
@@ -100,7 +107,9 @@ def _on_its_side(finder: PoseFinder, side: float, posture: Mapping[str, float]) 
     return 2 * finder.outside(corners) + 4 * float(across.mean() + across.max())
 
 
-def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> FoundPose:
+def _fold(
+    finder: PoseFinder, fixed: dict[str, float], target: np.ndarray, out: float = OUT
+) -> FoundPose:
     fixed = finder.aimed(dict(fixed), target)
     eye_in_hand = finder.eye is not None and finder.eye.in_hand
 
@@ -108,7 +117,7 @@ def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> Fo
         corners = finder.corners(posture)
         low = 0.2 * float(corners[:, 2].mean() - finder.stand.floor)
         aside = 0.15 * finder.aside(posture, target) if eye_in_hand else 0.0
-        return 2 * finder.outside(corners) + low + finder.covered(posture, corners) + aside
+        return out * finder.outside(corners) + low + finder.covered(posture, corners) + aside
 
     posture, margin = finder.folded(cost, fixed)
     notes = () if margin is not None else ("no posture without self-collision was found",)
@@ -118,15 +127,26 @@ def _fold(finder: PoseFinder, fixed: dict[str, float], target: np.ndarray) -> Fo
 def _raised_or_folded(
     finder: PoseFinder, home: FoundPose, closed: dict[str, float], target: np.ndarray
 ) -> FoundPose:
-    """The arm out of the picture, its lift as high as it can be without a collision."""
-    shares = (HIGH, *reversed(RAISED)) if finder.lifted(HIGH) else (HIGH,)
+    """The arm out of the picture, its lift as high as it can be without a collision.
+
+    An arm that does not fold so stays over the footprint: the robot is near a table. One that is
+    still in the way stays further down.
+    """
+    lifts = bool(finder.lifted(HIGH))
+    shares = (HIGH, *reversed(RAISED)) if lifts else (HIGH,)
     for share in shares:
         raised = _raised(finder, home, target, share)
         if raised is not None:
             return raised
-    folded = (_fold(finder, {**closed, **finder.lifted(share)}, target) for share in shares)
-    first = next(folded)
-    return first if first.clear is not None else next((p for p in folded if p.clear), first)
+    folded = list[FoundPose]()
+    for share in (*shares, LOW) if lifts else shares:
+        fixed = {**closed, **finder.lifted(share)}
+        folded.append(_fold(finder, fixed, target, BESIDE))
+        found = folded[-1]
+        if found.clear and found.outside < FAR_OUT / 2 and found.covered < GLIMPSE:
+            return found
+    clear = [pose for pose in folded if pose.clear is not None]
+    return min(clear, key=lambda p: BESIDE * p.outside + p.covered, default=folded[0])
 
 
 def _raised(
@@ -169,21 +189,25 @@ def _carry(finder: PoseFinder, hand: LimbSolver | None, ahead: np.ndarray) -> Fo
         return None
     floor, front, half = finder.stand.floor, finder.stand.front, finder.stand.width / 2
     low = (front - 0.35, -half, 0.45)
-    places = finder.random.uniform(low, (front + 0.3, half, 1.1), (2 * TARGETS, 3))
-    yaws = finder.random.uniform(-math.pi, math.pi, 2 * TARGETS)
-    targets = [
-        Transform.from_rpy((x, y, z + floor), (roll, 0.0, yaw))
-        for i, ((x, y, z), yaw) in enumerate(zip(places, yaws, strict=True))
-        for roll in [math.pi * (i % 2)]
-    ]
     fixed = finder.aimed({**finder.still, **posed(finder.arm.hand, 0.4)}, ahead)
+
+    def targets() -> Iterator[Transform]:
+        places = finder.random.uniform(low, (front + 0.3, half, 1.1), (2 * TARGETS, 3))
+        yaws = finder.random.uniform(-math.pi, math.pi, 2 * TARGETS)
+        for i, ((x, y, z), yaw) in enumerate(zip(places, yaws, strict=True)):
+            yield Transform.from_rpy((x, y, z + floor), (math.pi * (i % 2), 0.0, yaw))
 
     def cost(posture: Mapping[str, float]) -> float:
         corners = finder.corners(posture)
         return 2 * finder.outside(corners, HELD) + finder.covered(posture, corners)
 
-    found = finder.solved(hand, targets, fixed, cost)
-    return None if found is None else _pose(finder, *found)
+    found: list[dict[str, float]] = []
+    for _ in range(DRAWS):
+        found += finder.reached(hand, targets(), fixed)
+        if len(found) >= LEVEL:
+            break
+    best = finder.cheapest(found, cost)
+    return None if best is None else _pose(finder, *best)
 
 
 def _pose(

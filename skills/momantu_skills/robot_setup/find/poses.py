@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import islice, product
 
 import numpy as np
 
@@ -31,6 +31,8 @@ CLOSE = (0.005, 0.002, 0.0)
 """Clearances of pairs that are always nearer than a margin, m: the largest that they can keep."""
 OPENINGS = (1.0, 0.0, 0.5)
 """How far the hands are closed, as shares, where a posture must be clear."""
+LOOKS = (-1.0, 0.0, 1.0)
+"""How far a head turns to each side of where a pose points it, rad (a slide: m)."""
 PARTING = 60
 """Postures for detecting a pair that is always nearer than a margin."""
 AIMING = 6
@@ -184,9 +186,25 @@ class PoseFinder:
     def clear(self, posture: Mapping[str, float], margin: float) -> bool:
         """Whether links keep a margin from each other, and the arm from the floor.
 
-        They do with every opening of the hands: motions are planned with whatever it is then.
+        They do with every opening of the hands: motions are planned with whatever it is then. The
+        head may look around: nobody asks what is in its way.
         """
-        return all(self._clear_with({**posture, **fingers}, margin) for fingers in self._openings)
+        openings = ({**posture, **fingers} for fingers in self._openings)
+        looks = ({**posture, **look} for look in self._looks(posture))
+        return all(self._clear_with(each, margin) for each in openings) and all(
+            self._clear_with(each, MARGINS[-1]) for each in looks
+        )
+
+    def _looks(self, posture: Mapping[str, float]) -> Iterator[dict[str, float]]:
+        """The head turned to all sides of where it is."""
+        head = self.limbs.head.joints if self.limbs.head is not None else ()
+        aims = []
+        for name in head:
+            low, high = self.body.skeleton.joints[name].range
+            at = posture.get(name, self.body.rest()[name])
+            aims.append([min(max(at + turn, low), high) for turn in LOOKS])
+        if head:
+            yield from (dict(zip(head, look, strict=True)) for look in product(*aims))
 
     def _clear_with(self, posture: Mapping[str, float], margin: float) -> bool:
         if self.corners(posture)[:, 2].min() < self.stand.floor + OVER_FLOOR:
@@ -267,12 +285,21 @@ class PoseFinder:
         self, solver: LimbSolver, targets: Iterable[Transform], fixed: dict[str, float], cost: Cost
     ) -> tuple[dict[str, float], float | None] | None:
         """The cheapest clear posture among those that bring the frame to one of the targets."""
-        found = [
-            {**fixed, **joints} for target in targets for joints in solver.solve(target, SEEDS)
-        ]
-        found.sort(key=cost)
+        return self.cheapest(self.reached(solver, targets, fixed), cost)
+
+    def reached(
+        self, solver: LimbSolver, targets: Iterable[Transform], fixed: dict[str, float]
+    ) -> list[dict[str, float]]:
+        """Postures that bring the frame to one of the targets."""
+        return [{**fixed, **joints} for target in targets for joints in solver.solve(target, SEEDS)]
+
+    def cheapest(
+        self, postures: list[dict[str, float]], cost: Cost
+    ) -> tuple[dict[str, float], float | None] | None:
+        """The cheapest clear posture and the margin it keeps; None if none is clear."""
+        some = sorted(postures, key=cost)[: 4 * BEST]
         for margin in MARGINS:
-            for posture in found[: 4 * BEST]:
+            for posture in some:
                 if self.clear(posture, margin):
                     return posture, margin
         return None

@@ -41,8 +41,11 @@ def find_driving(
     if len(axles) >= FEWEST and _askew(body, axles):
         why = "its wheels have axes in several directions"
         return Driving(BaseKind.OMNIDIRECTIONAL, why, True)
-    if len(axles) >= FEWEST and all(_steered(body, joint) for joint in axles):
-        return Driving(BaseKind.OMNIDIRECTIONAL, "every wheel is steered", True)
+    steering = {_steering(body, joint) for joint in axles}
+    if axles and None not in steering and (len(axles) >= FEWEST or len(steering) < len(axles)):
+        one = len(axles) < FEWEST
+        why = "its wheels sit on a turntable" if one else "every wheel is steered"
+        return Driving(BaseKind.OMNIDIRECTIONAL, why, True)
     word = _word(document, {name for wheel in wheels for name in (wheel, *_joint(body, wheel))})
     if word is not None:
         return Driving(BaseKind.OMNIDIRECTIONAL, f"the URDF has `{word}`", False)
@@ -69,18 +72,18 @@ def _upright(body: Body, joint: SetupJoint) -> bool:
 
 def _askew(body: Body, axles: list[SetupJoint]) -> bool:
     """Whether axles that are fixed to the base are not parallel."""
-    fixed = [_axis(body, joint) for joint in axles if not _steered(body, joint)]
+    fixed = [_axis(body, joint) for joint in axles if _steering(body, joint) is None]
     return len(fixed) >= FEWEST and any(abs(fixed[0] @ axis) < PARALLEL for axis in fixed)
 
 
-def _steered(body: Body, axle: SetupJoint) -> bool:
-    """Whether an upright joint between the base and a wheel turns the wheel's axis."""
+def _steering(body: Body, axle: SetupJoint) -> str | None:
+    """The upright joint between the base and a wheel that turns the wheel's axis."""
     above = body.skeleton.above(axle.parent)
     while above is not None and axle.parent != body.base_frame:
         if above.kind in TURNING and _upright(body, above):
-            return True
+            return above.name
         above = body.skeleton.above(above.parent)
-    return False
+    return None
 
 
 def _word(document: etree._Element, names: set[str]) -> str | None:
