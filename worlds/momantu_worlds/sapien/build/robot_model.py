@@ -115,6 +115,7 @@ def _parse(
         loader.set_link_material(link, friction, friction, 0.0)
     articulations, _, _ = loader.parse(str(simulation.urdf or description.urdf), srdf_file="")
     builder = articulations[0]
+    own = {} if description.end_effector is None else description.hand.opening
     builder.mimic_joint_records = []  # drives move them: tendons pull the leader along
     links = {link.name: link for link in builder.link_builders}
     for link in builder.link_builders:
