@@ -297,9 +297,7 @@ def _with_followers(
         if joint.mimic is not None and joint.mimic.leader in leaders and name in body.index:
             a, b = leaders[joint.mimic.leader]
             ratio, offset = joint.mimic.multiplier, joint.mimic.offset
-            low, high = joint.range if joint.kind != "continuous" else (-np.inf, np.inf)
-            a, b = (min(max(ratio * each + offset, low), high) for each in (a, b))
-            every[name] = (a, b)
+            every[name] = (ratio * a + offset, ratio * b + offset)
     return every
 
 
