@@ -10,12 +10,13 @@ from momantu_bt.activity import Activity
 from momantu_bt.descriptions.tunables import configured
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import BaseLimits, Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.service import Localization
 from momantu_bt.skill import Needs, Run, Skill
 from momantu_bt.teleoperation import Command, Operator
 from momantu_skills.controls import OPERATED, commanded, rehearsed
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.drive.body import BodyScene
 from momantu_skills.navigation.drive.vehicle import Speed, Vehicle
 from momantu_skills.navigation.localize.service import LocalizationService
 
@@ -42,7 +43,7 @@ class TeleopBase(Skill):
     symptoms: ClassVar = {}
     operator: Operator = Needs()
     localization: Localization = Needs()
-    planning_scene: PlanningScene = Needs()
+    planning_scene: BodyScene = Needs()
 
     @classmethod
     def rehearsal(cls, seed: int) -> Mapping[str, Any]:

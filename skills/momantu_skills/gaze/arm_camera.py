@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,8 +117,8 @@ def plan_gaze(
     point = state.odom_from_base.inverse().apply(point_odom)
     ray = line_of_sight(arm.scene, state, held, within)
     postures = _ranked(arm, held, ray, point)
-    for margin in arm.planning.margins:
-        world = arm.scene.world(state, held, margin, extra=around)
+    for supposed, margin in product(arm.stages, arm.planning.margins):
+        world = arm.scene.world(state, held, margin, extra=around, supposed=supposed)
         goals = free_postures(arm, world, postures[:TESTED], point)
         if goals:
             return arm.route(goals, held, extra=around)

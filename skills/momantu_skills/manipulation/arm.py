@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from momantu_bt.robot import ARM, CameraSensor, Robot
 from momantu_bt.service import HeldObject
 from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
-from momantu_skills.manipulation.motion.following import STILL, Watch, follow
+from momantu_skills.manipulation.motion.following import CODE, STILL, Watch, follow
+from momantu_skills.manipulation.motion.recoil import recoil, way_ahead, way_back
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.perception.camera.snapshot import take
 
@@ -38,6 +40,7 @@ AROUND = 0.08
 """How far from the centre between the pads the grasped object may extend, m beyond half the widest
 opening."""
 
+NO_WAY = ("NO_PLAN", "START_IN_COLLISION")
 SWING = 0.4
 """How far the hand of an arm with few joints may turn about the vertical on a straight line, rad:
 such an arm leaves its plane only with a turn."""
@@ -135,26 +138,52 @@ class Arm:
         Free motions keep the configured margin. A start that is nearer to obstacles is left first,
         by a short escape motion.
 
-        width, cut, extra: see `Scene.world`.
+        width, cut, extra: see `Scene.world`. Where the way is only free if what the maps know is no
+        taller than pictures show, the arm goes slowly.
 
         Raises:
             Failure: NO_PLAN or START_IN_COLLISION.
         """
+        state, stages = self.state, self.stages
+        for supposed in stages:
+            judge = partial(self.scene.world, state, held, supposed=supposed)
+            transit = partial(judge, width=width, cut=cut, extra=extra)
+            bare = partial(judge, 0.0, held_on_support=True)
+            try:
+                return self._route(transit, bare, held, goals, careful=supposed != stages[0])
+            except Failure as failure:
+                if failure.code not in NO_WAY or supposed == stages[-1]:
+                    raise
+        raise AssertionError("the last stage returns or raises")
 
-        def world(clearance: float) -> collision.CollisionWorld:
-            return self.scene.world(state, held, clearance, width=width, cut=cut, extra=extra)
+    @property
+    def stages(self) -> tuple[float | None, ...]:
+        """What is supposed of the maps, from the most to the least: see `Scene.world`.
 
-        state, start = self.state, self.joints
+        What cannot be done with more is tried with less. At the end only what is known counts.
+        """
+        return self.planning.supposed if self.scene.near_columns(self.state) else (None,)
+
+    def _route(
+        self,
+        world: Callable[[float], collision.CollisionWorld],
+        bare: Callable[[], collision.CollisionWorld],
+        held: HeldObject | None,
+        goals: Sequence[Array],
+        careful: bool,
+    ) -> list[JointTrajectory]:
+        """The same in given worlds: with a clearance, m, and for leaving contacts."""
+        start = self.joints
         first: list[JointTrajectory] = []
         for margin in self.planning.margins:
             transit = world(margin)
             if not transit.free(start) and not first:
-                path = self._escape(state, start, held, transit)
-                first.append(self.trajectory(path, self.hand.approach_speed))
+                path = self._escape(start, transit, bare())
+                first.append(self.trajectory(path, self.hand.approach_speed, careful=careful))
                 start = path[-1]
             found = self._path(transit, held, start, goals)
             if found is not None:
-                return [*first, *self._checked(found, world(margin / 2))]
+                return [*first, *self._checked(found, world(margin / 2), careful)]
         raise self._no_plan(transit, goals)
 
     def _path(
@@ -172,15 +201,31 @@ class Arm:
             found = self.planner.path(start, goals, world.free)
         return found
 
-    def trajectory(self, path: Array, tip_speed: float | None = None) -> JointTrajectory:
-        """The fastest trajectory along a path; see `timed`."""
-        return timing.timed(self.group, path, self.planning, tip_speed)
+    def trajectory(
+        self, path: Array, tip_speed: float | None = None, *, careful: bool = False
+    ) -> JointTrajectory:
+        """The fastest trajectory along a path; see `timed`. careful: something may stand there."""
+        slow = self.planning.careful_speed if careful else None
+        return timing.timed(self.group, path, self.planning, tip_speed, joint_speed=slow)
 
     def follow(
         self, trajectory: JointTrajectory, phase: str, until: Watch | None = None
     ) -> Generator[str, None, bool]:
-        """See `motion.follow`."""
-        return follow(self.robot, self.skill.clock, ARM, trajectory, phase, until)
+        """See `motion.follow`. An arm that meets something goes back a little before it fails.
+
+        What it met is an obstacle from now on, until a picture shows that nothing is there.
+        """
+        try:
+            return (yield from follow(self.robot, self.skill.clock, ARM, trajectory, phase, until))
+        except Failure as failure:
+            if failure.code != CODE:
+                raise
+            state, here = self.state, self.joints
+            slow = partial(self.trajectory, careful=True)
+            if (yield from recoil(self.robot, self.skill.clock, ARM, trajectory, slow)):
+                passed = way_back(trajectory, here)
+                self.scene.met(state, passed, way_ahead(trajectory, here))
+            raise
 
     def settle(self) -> Generator[str, None, None]:
         """Wait until the arm stands still: its last motion may have been aborted."""
@@ -247,9 +292,10 @@ class Arm:
         state, half = self.state, self.open_width / 2 + AROUND
         tip = self.group.tip_pose(self.joints) @ self.scene.model.tip_from_grasp
         cut = scene.Cut(state.odom_from_base @ tip, (half, half, half))
-        return self.scene.world(state, None, 0.0, width=self.open_width, cut=cut).path_free(
-            path[1:]
+        world = self.scene.world(
+            state, None, 0.0, width=self.open_width, cut=cut, supposed=self.stages[-1]
         )
+        return world.path_free(path[1:])
 
     def lean(self, held: HeldObject, q: Array) -> float:
         """Tilt of the held object from upright at joints (n,), rad."""
@@ -277,13 +323,8 @@ class Arm:
         return valid
 
     def _escape(
-        self,
-        state: RobotState,
-        start: Array,
-        held: HeldObject | None,
-        world: collision.CollisionWorld,
+        self, start: Array, world: collision.CollisionWorld, bare: collision.CollisionWorld
     ) -> Array:
-        bare = self.scene.world(state, held, 0.0, held_on_support=True)
         path = planner.escape(self.group, start, world, bare, self.skill.random)
         if path is None:
             pairs = ", ".join(f"{a} with {b}" for a, b in bare.touching(start)[:3])
@@ -295,15 +336,18 @@ class Arm:
             )
         return path
 
-    def _checked(self, path: Array, world: collision.CollisionWorld) -> list[JointTrajectory]:
+    def _checked(
+        self, path: Array, world: collision.CollisionWorld, careful: bool
+    ) -> list[JointTrajectory]:
         """One trajectory that rounds corners where possible, or one per straight segment."""
         if len(path) == 2:
-            return [self.trajectory(path)]
+            return [self.trajectory(path, careful=careful)]
+        slow = self.planning.careful_speed if careful else None
         for radius in self.planning.rounding:
-            whole = timing.timed(self.group, path, self.planning, rounding=radius)
+            whole = timing.timed(self.group, path, self.planning, rounding=radius, joint_speed=slow)
             if world.path_free(whole.positions):
                 return [whole]
-        return [self.trajectory(path[i : i + 2]) for i in range(len(path) - 1)]
+        return [self.trajectory(path[i : i + 2], careful=careful) for i in range(len(path) - 1)]
 
     def _no_plan(self, world: collision.CollisionWorld, goals: Sequence[Array]) -> Failure:
         touching = [world.touching(goal) for goal in goals]

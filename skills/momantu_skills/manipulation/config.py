@@ -85,6 +85,12 @@ class PlanningConfig:
     speed: float = 0.95
     """Share of the speed and acceleration limits that is used: drivers reject commands beyond the
     limits."""
+    supposed: tuple[float | None, ...] = (0.04, 0.0, None)
+    """How much nearer than on its maps what may be as tall as a wall is supposed to stand, m, tried
+    in turn: the first covers errors of map and localization. None: it is no taller than seen."""
+    careful_speed: float = 0.1
+    """Fastest joint where something may stand that no sensor has seen, rad/s or m/s: a straight arm
+    that swings at a hard wall with it pushes with 60 N, and with 150 N at four times as fast."""
     sample: float = 0.04
     """Time between points of a timed trajectory, s."""
     tilt: float = 1.05

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from momantu_bt.robot import Robot
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.service import Localization
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill
 from momantu_skills.nav2.service import Nav2Service
+from momantu_skills.navigation.drive.body import BodyScene
 from momantu_skills.navigation.drive.vehicle import Vehicle
 
 
@@ -16,7 +17,7 @@ class OnCostmap(Skill):
     """The base of leaves that work with the costmap that all of them share."""
 
     localization: Localization = Needs()
-    planning_scene: PlanningScene = Needs()
+    planning_scene: BodyScene = Needs()
     nav2: Nav2Service = Needs("nav2_servers")
 
     def vehicle(self, robot: Robot) -> Vehicle:

@@ -10,6 +10,7 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import (
     Attached,
     BodyPairs,
+    Cells,
     CollisionWorld,
     Obstacle,
     body_pairs,
@@ -61,8 +62,8 @@ def test_cells_are_placed_by_their_frame(model: ArmModel, body: BodyPairs) -> No
     hand = model.group.tip_pose(q).position
     base_from_odom = Transform((1.0, -2.0, 0.0), (np.cos(0.4), 0, 0, np.sin(0.4)))
     cells = base_from_odom.inverse().apply(hand[None])
-    there = CollisionWorld(body, rest(model), cells=cells, base_from_cells=base_from_odom)
-    elsewhere = CollisionWorld(body, rest(model), cells=cells)
+    there = CollisionWorld(body, rest(model), cells=[Cells("cells", cells, 0.02, base_from_odom)])
+    elsewhere = CollisionWorld(body, rest(model), cells=[Cells("cells", cells, 0.02, Transform())])
     assert not there.free(q)
     assert elsewhere.free(q)
 

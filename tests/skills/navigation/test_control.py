@@ -177,6 +177,17 @@ def test_a_round_base_may_always_turn(w: float) -> None:
     assert safe_share((0.0, w, 0.0), REST, LIMITS, DISC, hits) == 1.0
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "expected"), [(0.0, 0.72, 1.0), (0.0, 0.85, 0.0), (1.2, 2.0, 1.0)]
+)
+def test_only_what_stands_at_a_parts_height_is_in_its_way(
+    low: float, high: float, expected: float
+) -> None:
+    hand = np.array([[0.6, 0.0, 0.1, 0.8, 1.0]])
+    column = np.array([[0.75, 0.0, low, high, 0.025]])
+    assert safe_share((0.3, 0.0, 0.0), REST, LIMITS, hand, column) == expected
+
+
 def test_backing_away_from_a_touch_is_allowed() -> None:
     touching = np.array([[0.29, 0.0]])
     assert safe_share((-0.2, 0.0, 0.0), REST, LIMITS, DISC, touching) == 1.0

@@ -149,6 +149,15 @@ class FlatScene:
     def is_robot(self, points: np.ndarray, state: RobotState) -> np.ndarray:
         return np.zeros(len(points), dtype=bool)
 
+    def overhang(self, state: RobotState) -> np.ndarray:
+        return np.empty((0, 5))
+
+    def solids(self, state: RobotState, hits: np.ndarray, reach: float) -> np.ndarray:
+        return np.empty((0, 5))
+
+    def not_free(self, state: RobotState, columns: np.ndarray) -> np.ndarray:
+        return columns
+
 
 def write_map(folder: Path, known: Sequence[Box], span: Box) -> Path:
     """A map_server map of boxes, 0.05 m per pixel, over `span`."""

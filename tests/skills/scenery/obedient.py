@@ -42,6 +42,7 @@ class Obedient:
         self.base_discs = self.low_discs = discs(OUTLINE)
         reach = np.array([[0.25 + arm - 0.05, 0.0, 0.05]]) if arm else np.empty((0, 3))
         self.discs = np.vstack([self.base_discs, reach])
+        self.reaches_over = False
         self.half_width = half_width(OUTLINE)
         self.start, self.at, self.time = start, Pose2D(0.0, 0.0), 0.0
         self.v = self.w = self.u = 0.0

@@ -116,6 +116,38 @@ def test_a_blocked_arm_gives_way_before_it_hurts() -> None:
     assert simulator.robot.state().position("torso_lift_joint") > 0.15
 
 
+@pytest.mark.parametrize(("speed", "most"), [(0.1, 65.0), (0.4, 170.0)])
+def test_how_hard_a_straight_arm_hits_a_wall_depends_on_its_speed(
+    speed: float, most: float
+) -> None:
+    """The first is `careful_speed` of the planned arm; a straight one has the most inertia."""
+    episode = dataclasses.replace(
+        plain_episode(table=False), start=Pose2D(WALL_FACE - 0.9, 0.0, 0.0)
+    )
+    pose = dict.fromkeys(ARM, 0.0) | {"torso_lift_joint": 0.3, "shoulder_pan_joint": 0.9}
+    simulator = Simulator(FETCH, episode, 0, render=False, pose=pose)
+    simulator.truth.watch_contacts()
+    start = np.array([simulator.robot.state().position(name) for name in ARM])
+    forces = [0.0]
+    trajectory = swing(start, -0.9, speed)
+    for _ in range(int(trajectory.duration / 0.05)):
+        run(simulator, 1, arm=trajectory)
+        forces += [c.force for c in simulator.truth.contacts() if c.second == "wall"]
+    assert 30.0 < max(forces) < most
+    assert max(forces[-10:]) < 30.0
+
+
+def swing(start: np.ndarray, turn: float, speed: float) -> JointTrajectory:
+    """The shoulder turns by `turn` rad at a speed, rad/s, between soft ends."""
+    duration = 1.875 * abs(turn) / speed
+    times = np.linspace(0.0, duration, 200)
+    u = times / duration
+    shape, slope = u**3 * (10 - 15 * u + 6 * u * u), 30 * u**2 * (1 - u) ** 2 / duration
+    way = np.zeros(len(ARM))
+    way[ARM.index("shoulder_pan_joint")] = turn
+    return JointTrajectory(ARM, times, start + shape[:, None] * way, np.outer(slope, way))
+
+
 def test_a_closed_hand_feels_nothing_and_an_open_one_has_its_width() -> None:
     simulator = empty_room()
     assert simulator.robot.state().gripper_width == pytest.approx(0.1, abs=3e-3)

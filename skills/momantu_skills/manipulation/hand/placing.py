@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
@@ -82,14 +83,37 @@ def retreat_of(arm: Arm, held: HeldObject) -> Transform:
 
 
 def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> list[_Candidate]:
-    state = arm.state
-    margin = arm.hand.near_margin
-    carrying = arm.scene.world(state, held, margin, held_on_support=True)
-    opened = arm.scene.world(state, None, margin, width=arm.open_width)
+    postures = list(islice(_postures(arm, held, spots), TESTED))
+    for supposed in arm.stages:
+        found, lost = _possible(arm, held, postures, supposed)
+        if found:
+            return found
+    where = ", ".join(f"{n} at {what}" for what, n in lost.items() if n)
+    raise Failure(
+        "NO_PLACE_POSE",
+        f"the hand can set the {held.object.category} down upright on none of {len(spots)} "
+        f"spots: {where or 'no posture of the arm reaches them'}",
+        **lost,
+    )
+
+
+def _possible(
+    arm: Arm,
+    held: HeldObject,
+    postures: Sequence[tuple[Transform, Array, float]],
+    supposed: float | None,
+) -> tuple[list[_Candidate], dict[str, int]]:
+    """The best postures that are possible, and how many failed at each step.
+
+    supposed: see `Scene.world`.
+    """
+    state, margin = arm.state, arm.hand.near_margin
+    carrying = arm.scene.world(state, held, margin, held_on_support=True, supposed=supposed)
+    opened = arm.scene.world(state, None, margin, width=arm.open_width, supposed=supposed)
     lost = {"collides": 0, "lowering": 0, "retreat": 0}
     found: list[_Candidate] = []
-    for count, (pose, q, cost) in enumerate(_postures(arm, held, spots)):
-        if len(found) >= ENOUGH or count >= TESTED:
+    for pose, q, cost in postures:
+        if len(found) >= ENOUGH:
             break
         if not carrying.free(q):
             lost["collides"] += 1
@@ -104,15 +128,7 @@ def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> list[_Candid
             lost["retreat"] += 1
             continue
         found.append(_Candidate(pose, lower, cost))
-    if not found:
-        where = ", ".join(f"{n} at {what}" for what, n in lost.items() if n)
-        raise Failure(
-            "NO_PLACE_POSE",
-            f"the hand can set the {held.object.category} down upright on none of {len(spots)} "
-            f"spots: {where or 'no posture of the arm reaches them'}",
-            **lost,
-        )
-    return found
+    return found, lost
 
 
 def _postures(

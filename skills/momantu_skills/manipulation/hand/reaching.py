@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, product
 
 import numpy as np
 
@@ -103,7 +103,7 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     """Grasps with possible approach, closing and lift, best first.
 
     What is assumed behind the object's visible faces counts as an obstacle, unless nothing is left
-    then.
+    then; so does what is supposed of the maps.
 
     Raises:
         Failure: NO_GRASP, with the number of postures that failed at each step, and why each side
@@ -111,8 +111,8 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
     """
     grasps = _fitting(arm, thing)
     postures = list(_postures(arm, thing, grasps))[:TESTED]
-    for filled in (False, True):
-        check = _Check(arm, thing, lift, Cut(thing.pose.transform, _cut(thing), filled))
+    for supposed, filled in product(arm.stages, (False, True)):
+        check = _Check(arm, thing, lift, Cut(thing.pose.transform, _cut(thing), filled), supposed)
         found = list(islice(filter(None, (check(*posture) for posture in postures)), ENOUGH))
         if found:
             return found
@@ -220,12 +220,16 @@ def _upright_postures(
 class _Check:
     """Checks hand, approach and lift of a posture at a grasp; counts the failures per step."""
 
-    def __init__(self, arm: Arm, thing: DetectedObject, lift: float, cut: Cut) -> None:
+    def __init__(
+        self, arm: Arm, thing: DetectedObject, lift: float, cut: Cut, supposed: float | None
+    ) -> None:
         self._arm, self._thing, self._lift = arm, thing, lift
         self._state: RobotState = arm.state
-        self._cut = cut
+        self._cut, self._supposed = cut, supposed
         margin = arm.hand.near_margin
-        self._open = arm.scene.world(self._state, None, margin, width=arm.open_width, cut=cut)
+        self._open = arm.scene.world(
+            self._state, None, margin, width=arm.open_width, cut=cut, supposed=supposed
+        )
         solids = [object_corners(thing)]
         self._around = _around(arm, self._state, thing, solids)
         self._walls = _around(arm, self._state, thing, wall_pieces(thing))
@@ -260,6 +264,7 @@ class _Check:
             width=grasp.width,
             held_on_support=True,
             cut=self._cut,
+            supposed=self._supposed,
         )
 
     def _lost(self, step: str, grasp: Grasp, q: Array, *worlds: CollisionWorld) -> None:

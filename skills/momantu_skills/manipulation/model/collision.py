@@ -37,6 +37,21 @@ class Obstacle:
 
 
 @dataclass(frozen=True, eq=False)
+class Cells:
+    """Occupied cubes of one size: their centres (n, 3) in a frame of their own, and their edge, m.
+
+    The frame's axes run along the edges, and its origin is a corner of the raster. doubt: how much
+    nearer they may be, m.
+    """
+
+    name: str
+    centres: Array
+    edge: float
+    base_from_cells: Transform
+    doubt: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
 class Attached:
     """The held object: corners (n, 3) of its hull in the tip's frame, m."""
 
@@ -113,8 +128,8 @@ def body_pairs(model: ArmModel) -> BodyPairs:
 class CollisionWorld:
     """Collision checks for one situation: other joints, surroundings, held object.
 
-    cells: centres (n, 3) of occupied cells, in a frame whose pose is `base_from_cells`. margin:
-    clearance to surroundings, m. touching: (link or "held", obstacle name) pairs that may touch.
+    cells: occupied cubes. margin: clearance to surroundings, m. held_on_support: the held object
+    may touch obstacles that are supports.
     """
 
     def __init__(
@@ -122,9 +137,7 @@ class CollisionWorld:
         body: BodyPairs,
         posture: Array,
         obstacles: Sequence[Obstacle] = (),
-        cells: Array | None = None,
-        voxel: float = 0.02,
-        base_from_cells: Transform | None = None,
+        cells: Sequence[Cells] = (),
         attached: Attached | None = None,
         margin: float = 0.0,
         held_on_support: bool = False,
@@ -138,24 +151,27 @@ class CollisionWorld:
         self._index = body.model.group_index
         around = {obstacle.name: self._add_obstacle(obstacle) for obstacle in obstacles}
         around["floor"] = self._add_floor()
-        if cells is not None and len(cells):
-            around["cells"] = self._add_cells(cells, voxel, base_from_cells or Transform())
+        around |= {some.name: self._add_cells(some) for some in cells if len(some.centres)}
         pairs = list(body.pairs)
+        doubts = {some.name: margin + some.doubt for some in cells}
         moving = [shape for link in body.moving for shape in body.links[link]]
-        near = list(product(moving, around.values()))
+        near = [(shape, n, doubts.get(n, margin)) for shape in moving for n in around]
         if attached is not None:
             held = self._attach(attached)
             supports = {o.name for o in obstacles if o.support and held_on_support}
-            near += [(held, around[name]) for name in around if name not in supports]
+            near += [(held, n, doubts.get(n, margin)) for n in around if n not in supports]
             pairs += [(held, shape) for shape in self._strangers()]
-        self._finish(pairs, near, margin)
+        self._finish(pairs, [((shape, around[n]), gap) for shape, n, gap in near], margin)
 
     def _finish(
-        self, pairs: Iterable[tuple[int, int]], near: Iterable[tuple[int, int]], margin: float
+        self,
+        pairs: Iterable[tuple[int, int]],
+        near: Iterable[tuple[tuple[int, int], float]],
+        margin: float,
     ) -> None:
         own = min(margin, SELF_MARGIN)
         kept = [(pair, 0.0 if pair in self.body.close else own) for pair in pairs]
-        kept += [(pair, margin) for pair in near]
+        kept += near
         for (a, b), _ in kept:
             self._geometry.addCollisionPair(pin.CollisionPair(a, b))
         self._shapes = self._geometry.createData()
@@ -197,10 +213,10 @@ class CollisionWorld:
         place = pin.SE3(np.eye(3), np.array([0.0, 0.0, FLOOR - 0.05]))
         return self._add("floor", coal.Box(4.0, 4.0, 0.1), place)
 
-    def _add_cells(self, cells: Array, voxel: float, base_from_cells: Transform) -> int:
-        tree = coal.makeOctree(np.ascontiguousarray(cells), voxel)
-        place = pin.SE3(base_from_cells.rotation, np.array(base_from_cells.position))
-        return self._add("cells", tree, place)
+    def _add_cells(self, cells: Cells) -> int:
+        tree = coal.makeOctree(np.ascontiguousarray(cells.centres), cells.edge)
+        pose = cells.base_from_cells
+        return self._add(cells.name, tree, pin.SE3(pose.rotation, np.array(pose.position)))
 
     def _add(self, name: str, shape: coal.CollisionGeometry, place: pin.SE3) -> int:
         return int(self._geometry.addGeometryObject(pin.GeometryObject(name, 0, 0, place, shape)))

@@ -53,10 +53,10 @@ def follow(
     """
     began = clock.now()
     delay = _Delay(trajectory)
-    last = _positions(robot, trajectory.names)
+    last = joints_of(robot, trajectory.names)
     while True:
         now = clock.now()
-        positions = _positions(robot, trajectory.names)
+        positions = joints_of(robot, trajectory.names)
         still = float(np.abs(positions - last).max()) < STILL
         last = positions
         if until is not None and until(robot):
@@ -104,11 +104,11 @@ def brake(
     """Stop an actuator and wait until its joints stand still, at most SETTLE seconds."""
     joints = robot.description.actuators[actuator].joints
     began = clock.now()
-    last = _positions(robot, joints)
+    last = joints_of(robot, joints)
     robot.stop(actuator)
     yield phase
     while clock.now() - began < SETTLE:
-        now = _positions(robot, joints)
+        now = joints_of(robot, joints)
         if float(np.abs(now - last).max()) < STILL:
             return
         last = now
@@ -125,9 +125,10 @@ def expected(trajectory: JointTrajectory, after: float) -> Array:
     return np.asarray(before + share * (later - before))
 
 
-def _positions(robot: Robot, joints: Sequence[str]) -> Array:
+def joints_of(robot: Robot, names: Sequence[str]) -> Array:
+    """Measured positions (n,) of joints."""
     state = robot.state()
-    return np.array([state.position(name) for name in joints])
+    return np.array([state.position(name) for name in names])
 
 
 def _arrived(positions: Array, trajectory: JointTrajectory) -> bool:

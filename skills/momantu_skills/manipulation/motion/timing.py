@@ -59,10 +59,12 @@ def timed(
     config: PlanningConfig,
     tip_speed: float | None = None,
     rounding: float | None = None,
+    joint_speed: float | None = None,
 ) -> JointTrajectory:
     """The fastest trajectory along waypoints (k, n), at rest at both ends.
 
-    tip_speed: largest speed of the tip, m/s. rounding: see `rounded`. Method: Pham and Pham, "A New
+    tip_speed: largest speed of the tip, m/s. rounding: see `rounded`. joint_speed: largest speed of
+    any joint, rad/s or m/s. Method: Pham and Pham, "A New
     Approach to Time-Optimal Path Parameterization Based on Reachability Analysis" (TOPP-RA), 2018.
 
     Raises:
@@ -94,6 +96,8 @@ def timed(
     velocities = result(times, 1)
     velocities[0] = velocities[-1] = 0.0
     slow = 1.0 if tip_speed is None else _slowdown(group, positions, velocities, tip_speed)
+    if joint_speed is not None:
+        slow = max(slow, float(np.abs(velocities).max()) / joint_speed)
     return _trajectory(group, times * slow, positions, velocities / slow)
 
 

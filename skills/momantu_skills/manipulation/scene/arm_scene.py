@@ -6,8 +6,8 @@ from typing import Protocol
 
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import SupportPlane
-from momantu_bt.service import PlanningScene
 from momantu_bt.world import Surface
+from momantu_skills.navigation.drive.body import BodyScene
 
 with lazily():
     from momantu_skills.manipulation.scene import scene, site_obstacles
@@ -15,7 +15,7 @@ with lazily():
     from momantu_skills.manipulation.scene.payload import Payload
 
 
-class ArmScene(PlanningScene, Protocol):
+class ArmScene(BodyScene, Protocol):
     """A planning scene for arm motions; `PlanningSceneService` implements it."""
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -14,16 +15,19 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, RobotState, SupportPlane
 from momantu_bt.robot import RobotDescription
 from momantu_bt.service import HeldObject, Snapshot
-from momantu_skills.manipulation.config import SceneConfig
+from momantu_skills.manipulation.config import PlanningConfig, SceneConfig
 from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import (
     Attached,
     BodyPairs,
+    Cells,
     CollisionWorld,
     Obstacle,
     body_pairs,
 )
 from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
+from momantu_skills.manipulation.scene import outreach
+from momantu_skills.manipulation.scene.columns import DOUBT, HALF_DIAGONAL, WALL, Columns
 from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
 from momantu_skills.manipulation.scene.surroundings import (
     SeenSpace,
@@ -38,11 +42,15 @@ from momantu_skills.manipulation.scene.surroundings import (
     support_of_plane,
     within,
 )
+from momantu_skills.manipulation.scene.swept import swept
+from momantu_skills.navigation.control.guard import HARD_MARGIN
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.rows import unique_rows
 
 PER_METRE = 1e4
 """Places of cells are whole tenths of a millimetre, so that a cell seen twice is one cell."""
+SUPPOSED = PlanningConfig().supposed[0]
+"""How much nearer than on its maps what may be as tall as a wall stands, m, where nobody says."""
 FORGET = 2.0
 """Distance from the base above which cells and supports are deleted, m, because odometry has
 drifted since."""
@@ -77,6 +85,8 @@ class Scene:
         self.points: Array = np.empty((0, 3))
         self.known: tuple[Support, ...] = ()
         self.overhead: tuple[Overhead, ...] = ()
+        self.columns: Columns | None = None
+        self.odom_from_map: Transform | None = None
         self.seen_space = SeenSpace()
         self._mask = LinkMask(self.model.hulls, config.robot_padding)
         if description.has_arm:
@@ -86,6 +96,13 @@ class Scene:
     def body(self) -> BodyPairs:
         """The robot's shapes, and the pairs of links that the arm can bring together."""
         return body_pairs(self.model)
+
+    @property
+    def _reach(self) -> float:
+        """Distance from the base where elbow, hand or load may meet obstacles, m."""
+        working = self.model.description.working
+        farthest = working.look_off if working.reach is None else working.reach[2]
+        return farthest + self.config.beyond_reach
 
     # seeing
 
@@ -119,10 +136,7 @@ class Scene:
         image, odom_from_base = snapshot.image, snapshot.odom_from_base
         optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
         base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
-        working = self.model.description.working
-        farthest = working.look_off if working.reach is None else working.reach[2]
-        reach = farthest + self.config.beyond_reach
-        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < reach]
+        base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self._reach]
         own = self.is_robot(base_points, snapshot.state, held)
         return odom_from_base.apply(base_points[~own])
 
@@ -168,12 +182,32 @@ class Scene:
         self.surroundings = replace(self.surroundings, supports=(*others, support))
         return support
 
+    def met(self, state: RobotState, passed: Array, ahead: Array) -> None:
+        """Take over that something stopped the arm on its way to joints `ahead` (n,).
+
+        It is where links would have come that did not get there at joints `passed` (k, n), and
+        where no picture shows that nothing is; later pictures may show it.
+        """
+        edge = self.config.voxel
+        found = swept(self.model, self.body.moving, state, passed, ahead, edge)
+        found = found[~self.seen_space.free(found, HALF_DIAGONAL * edge, DOUBT)]
+        places = np.rint(np.vstack([self.surroundings.cells, found]) * PER_METRE).astype(np.int64)
+        cells = np.asarray(unique_rows(places)[0] / PER_METRE)
+        self.surroundings = replace(self.surroundings, cells=cells)
+
     # the robot's own body
 
     def footprint(
         self, state: RobotState, held: HeldObject | None, below: float = math.inf
     ) -> Array:
         """See `PlanningScene.footprint`."""
+        corners = [each for each in self._corners(state, held) if each[:, 2].min() < below]
+        outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
+        everything = np.vstack([*corners, outline])
+        return floor_outline(everything[everything[:, 2] < self.model.description.height])
+
+    def _corners(self, state: RobotState, held: HeldObject | None) -> list[Array]:
+        """Corners (n, 3) of each link, and of the held object, base frame."""
         poses = self.model.link_poses(self.model.configuration(state))
         corners = [
             hull @ poses[link][:3, :3].T + poses[link][:3, 3]
@@ -182,10 +216,7 @@ class Scene:
         if held is not None:
             tip = poses[self.model.description.hand.frame]
             corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
-        corners = [each for each in corners if each[:, 2].min() < below]
-        outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
-        everything = np.vstack([*corners, outline])
-        return floor_outline(everything[everything[:, 2] < self.model.description.height])
+        return corners
 
     def is_robot(
         self, points: Array, state: RobotState, held: HeldObject | None
@@ -222,20 +253,20 @@ class Scene:
         held_on_support: bool = False,
         cut: Cut | None = None,
         extra: tuple[Obstacle, ...] = (),
+        supposed: float | None = SUPPOSED,
     ) -> CollisionWorld:
         """A collision world for the current state. Everything is placed by the state's odometry.
 
         width: the gripper's opening for the check, m; the measured one if None. held_on_support:
         the held object may touch supports. cut: a box in which cells are ignored. extra: additional
-        solids.
+        solids. supposed: what the maps know is as tall as a wall where no picture has seen over it,
+        and may be this much nearer, m; None: only what is known of its height counts.
         """
         base_from_odom = state.odom_from_base.inverse()
         around = self.surroundings if cut is None else self.surroundings.without(*cut)
-        cells = around.cells
-        seen = len(around.supports)
-        supports = shelved((*around.supports, *self._unseen(state.odom_from_base)))
-        for support in supports[:seen]:
-            cells = cells[~self._covered(cells, support)]
+        supports = self._supports(state)
+        seen = self._uncovered(around.cells, supports[: len(around.supports)])
+        tall = None if supposed is None else self._tall(state, supposed)
         attached = None if held is None else Attached(self.held_corners(held))
         return CollisionWorld(
             self.body,
@@ -245,13 +276,84 @@ class Scene:
                 *hanging(self.overhead, base_from_odom, FORGET),
                 *extra,
             ],
-            cells=cells,
-            voxel=self.config.voxel,
-            base_from_cells=base_from_odom,
+            cells=[
+                Cells("cells", seen, self.config.voxel, base_from_odom),
+                *(() if tall is None else (tall,)),
+            ],
             attached=attached,
             margin=margin,
             held_on_support=held_on_support,
         )
+
+    def overhang(self, state: RobotState, held: HeldObject | None) -> Array:
+        """See `BodyScene.overhang`."""
+        base = np.array(self.model.description.footprint)
+        height = self.model.description.height
+        parts = [part for part in self._corners(state, held) if part[:, 2].min() < height]
+        return outreach.overhang(parts, base)
+
+    def solids(self, state: RobotState, hits: Array, reach: float) -> Array:
+        """See `BodyScene.solids`."""
+        base_from_odom = state.odom_from_base.inverse()
+        supports = self._supports(state)
+        seen = supports[: len(self.surroundings.supports)]
+        cells = base_from_odom.apply(self._uncovered(self.surroundings.cells, seen))
+        tall, radius = self._tall_near(state, reach)
+        hits = outreach.unexplained(outreach.beside(hits, supports, base_from_odom), tall)
+        columns = [
+            outreach.columns_of_supports(supports, base_from_odom),
+            outreach.columns_of_cells(cells, self.config.voxel),
+            outreach.standing(hits, WALL, 0.0),
+            outreach.standing(tall, WALL, radius),
+        ]
+        found = np.vstack(columns)
+        return np.asarray(found[np.hypot(found[:, 0], found[:, 1]) < reach])
+
+    def _tall_near(self, state: RobotState, reach: float) -> tuple[Array, float]:
+        """Points (n, 2), base frame, of what the maps know near, and their radius.
+
+        With the guard's margin they reach to where the map draws them.
+        """
+        if self.columns is None or self.odom_from_map is None:
+            return np.empty((0, 2)), 0.0
+        map_from_base = self.odom_from_map.inverse() @ state.odom_from_base
+        x, y, _ = map_from_base.position
+        tall = self.columns.near(float(x), float(y), reach)
+        flat = map_from_base.inverse().apply(np.column_stack([tall, np.zeros(len(tall))]))
+        return flat[:, :2], max(0.0, self.columns.edge / 2 - HARD_MARGIN)
+
+    def not_free(self, state: RobotState, columns: Array) -> Array:
+        """See `BodyScene.not_free`."""
+        pieces = outreach.cut(columns)
+        middles = np.column_stack([pieces[:, :2], pieces[:, 2:4].mean(axis=1)])
+        there = state.odom_from_base.apply(middles)
+        free = self.seen_space.free(there, HALF_DIAGONAL * outreach.GRID, DOUBT)
+        return np.asarray(pieces[~free])
+
+    def near_columns(self, state: RobotState) -> bool:
+        """Whether the maps know anything within reach that may be as tall as a wall."""
+        if self.columns is None or self.odom_from_map is None:
+            return False
+        x, y, _ = (self.odom_from_map.inverse() @ state.odom_from_base).position
+        return len(self.columns.near(float(x), float(y), self._reach)) > 0
+
+    def _tall(self, state: RobotState, doubt: float) -> Cells | None:
+        """What the maps know near the base, as tall as a wall where no picture has seen over it."""
+        if self.columns is None or self.odom_from_map is None:
+            return None
+        return self.columns.cells(
+            state.odom_from_base, self.odom_from_map, self.seen_space, self._reach, doubt
+        )
+
+    def _supports(self, state: RobotState) -> tuple[Support, ...]:
+        """The surfaces that pictures have shown, then those that the site knows besides."""
+        return shelved((*self.surroundings.supports, *self._unseen(state.odom_from_base)))
+
+    def _uncovered(self, cells: Array, supports: Sequence[Support]) -> Array:
+        """The cells (n, 3) that belong to none of the supports."""
+        for support in supports:
+            cells = cells[~self._covered(cells, support)]
+        return cells
 
     def _unseen(self, odom_from_base: Transform) -> list[Support]:
         """Surfaces near the base that are in the site and that no picture has shown yet."""

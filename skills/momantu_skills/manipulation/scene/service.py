@@ -21,7 +21,7 @@ from momantu_skills.manipulation.scene.holding import Holding
 from momantu_skills.manipulation.scene.payload import Payload
 
 with lazily():
-    from momantu_skills.manipulation.scene import scene, site_obstacles, surroundings
+    from momantu_skills.manipulation.scene import columns, scene, site_obstacles, surroundings
 
 
 class PlanningSceneService(Service):
@@ -46,6 +46,11 @@ class PlanningSceneService(Service):
     def floor_plan(self) -> site_obstacles.FloorPlan:
         """The obstacles that the site's maps know."""
         return site_obstacles.FloorPlan(self.site, self.frames)
+
+    @cached_property
+    def _columns(self) -> columns.Columns:
+        """What the site's maps know and whose height nobody does."""
+        return columns.Columns(self.site)
 
     def update(self, robot: Robot, now: float) -> None:
         """Check again whether the object is still held, and weigh the empty hand."""
@@ -103,18 +108,21 @@ class PlanningSceneService(Service):
         if not isinstance(self.site.surfaces, Surfaces):
             raise TypeError(f"the surfaces of the site {self.site.name!r} are fixed")
         self.site.surfaces.correct(name, surface)
-        self.__dict__.pop("floor_plan", None)
+        for drawn in ("floor_plan", "_columns"):
+            self.__dict__.pop(drawn, None)
         self.take_over_site()
 
     def take_over_site(self) -> None:
         """Place the site's surfaces and what hangs over them; none while not localized."""
         self.scene.known = self.scene.overhead = ()
+        self.scene.columns = self.scene.odom_from_map = None
         try:
             odom_from_map = self.frames.lookup(ODOM, MAP)
         except Failure as failure:
             if failure.code != FRAME_UNKNOWN:
                 raise
             return
+        self.scene.columns, self.scene.odom_from_map = self._columns, odom_from_map
         surfaces = self.site.surfaces.values()
         self.scene.known = tuple(surroundings.known_support(s, odom_from_map) for s in surfaces)
         self.scene.overhead = tuple(
@@ -127,6 +135,19 @@ class PlanningSceneService(Service):
         below: parts of arm and held object that are entirely above this height, m, are left out.
         """
         return self.scene.footprint(state, self.held, below)
+
+    def overhang(self, state: RobotState) -> Array:
+        """See `BodyScene.overhang`."""
+        return self.scene.overhang(state, self.held)
+
+    def solids(self, state: RobotState, hits: Array, reach: float) -> Array:
+        """See `BodyScene.solids`."""
+        self.take_over_site()
+        return self.scene.solids(state, hits, reach)
+
+    def not_free(self, state: RobotState, columns: Array) -> Array:
+        """See `BodyScene.not_free`."""
+        return self.scene.not_free(state, columns)
 
     def is_robot(self, points: Array, state: RobotState) -> Any:
         """(n,) bool: which points (n, 3) in the base frame are on the robot or its held object."""

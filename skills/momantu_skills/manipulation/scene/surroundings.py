@@ -48,6 +48,9 @@ STRIDE = 4
 """Every n-th pixel of a kept picture's depth, in each direction."""
 KEPT = 12
 """Number of pictures whose views are kept: those of a search and of two views of a grasp."""
+FAR_VIEW = 3.0
+"""Distance between two pictures above which the older one is forgotten, m, because odometry has
+drifted since."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,6 +265,11 @@ class _View:
     nearest: float
     depth: NDArray[np.float32]
 
+    @property
+    def camera(self) -> Array:
+        """Where the picture was taken (3,), odom, m."""
+        return self.odom_from_camera.position
+
     def shows(self, points: Array) -> NDArray[np.bool_]:
         z, u, v = self._pixels(points)
         return self._inside(z, u, v)
@@ -304,7 +312,7 @@ class SeenSpace:
     """The space that the camera has seen, in odom."""
 
     def __init__(self) -> None:
-        self._views: deque[_View] = deque(maxlen=KEPT)
+        self._views = deque[_View](maxlen=KEPT)
         self.count = 0
         """Number of pictures added so far."""
 
@@ -313,7 +321,9 @@ class SeenSpace:
         height, width = image.depth.shape
         depth = np.array(image.depth[::STRIDE, ::STRIDE])
         view = _View(odom_from_camera, image.intrinsics, (height, width), nearest, depth)
-        self._views.append(view)
+        here = odom_from_camera.position[:2]
+        near = [v for v in self._views if np.linalg.norm(v.camera[:2] - here) < FAR_VIEW]
+        self._views = deque([*near, view], maxlen=KEPT)
         self.count += 1
 
     def show(self, points: Array) -> NDArray[np.bool_]:

@@ -21,6 +21,7 @@ from momantu_skills.navigation.control.graceful import (
 )
 from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field
+from momantu_skills.navigation.map.heights import Tall
 
 SIDE_SPEED = 0.3
 """Top speed sideways and backwards, m/s: a laser that looks ahead may not see what is there."""
@@ -49,7 +50,7 @@ def simulate(
     speed: tuple[float, float, float],
     goal: Pose2D,
     limits: BaseLimits,
-    costmap: Costmap,
+    costmap: Costmap | Tall,
     discs: Array,
 ) -> Arrival:
     """Simulate the way from a pose at a measured speed, with its least clearance."""

@@ -15,6 +15,7 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.robot import BaseLimits
 from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field
+from momantu_skills.navigation.map.heights import Tall
 
 TURN_IN = 1.3
 """k1 of the paper: how strongly the heading turns towards the goal's axis."""
@@ -79,7 +80,7 @@ def simulate(
     speed: tuple[float, float, float],
     goal: Pose2D,
     limits: BaseLimits,
-    costmap: Costmap,
+    costmap: Costmap | Tall,
     discs: Array,
 ) -> Arrival:
     """Simulate the approach from a pose and a measured speed, with its least clearance.

@@ -18,6 +18,11 @@ NEAR = 1.6
 """Hits farther away than this, m, cannot be reached before the next scan."""
 NOISE = 0.002
 """How much nearer a hit inside the margin may come, m: tolerance for rounding errors."""
+TOGETHER = 0.3
+"""Distance within which columns belong together, m."""
+DEEPEST = -0.01
+"""Least distance that a column takes over from one beside it, m: less is a contact, not a gap that
+was drawn too narrow."""
 STEP = 0.05
 """Time step of the prediction, s."""
 
@@ -32,23 +37,38 @@ def safe_share(
     """Return the largest of 1, 3/4, 1/2, 1/4, 0 that scales a command to a safe one.
 
     command, speed: (m/s ahead, rad/s, m/s to the left), commanded and measured. discs: footprint
-    (m, 3). hits: (n, 2) of the newest scan; both in the base frame. A hit that is inside the margin
-    already does not forbid motion: only commands that bring it nearer are refused.
+    (m, 3), or (m, 5) with the lowest and highest point of each. hits: points (n, 2), or columns
+    (n, 5) with the lowest and highest point of each, and its radius; all in the base frame, m. What
+    has no heights is met at any. A hit that is inside the margin already does not forbid motion:
+    only commands that bring it nearer are refused. Columns belong together: what stands beside one
+    that is inside the margin may come as near, as on a drive along a wall, but not into a contact.
     """
     near = hits[np.hypot(hits[:, 0], hits[:, 1]) < NEAR]
+    together = TOGETHER if near.shape[1] == 5 else 0.0
+    if near.shape[1] == 2:
+        near = np.column_stack([near, np.tile((-np.inf, np.inf, 0.0), (len(near), 1))])
+    if discs.shape[1] == 3:
+        discs = np.column_stack([discs, np.tile((-np.inf, np.inf), (len(discs), 1))])
     bounds = np.array([limits.linear_acceleration, limits.angular_acceleration])
     for share in (1.0, 0.75, 0.5, 0.25):
         wanted = np.array([*(part * share for part in command), *speed])
-        if _clear(wanted, bounds, discs, near):
+        if _clear(wanted, bounds, discs, near, together):
             return share
     return 0.0
 
 
 @numba.njit(cache=True)
-def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
-    allowed = np.empty(hits.shape[0])
+def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array, together: float) -> bool:
+    now = np.empty(hits.shape[0])
     for j in range(hits.shape[0]):
-        allowed[j] = min(HARD_MARGIN, _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) - NOISE)
+        now[j] = min(HARD_MARGIN, _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) - NOISE)
+    allowed = now.copy()
+    for i in range(hits.shape[0]):
+        if now[i] == HARD_MARGIN:
+            continue
+        for j in range(hits.shape[0]):
+            if math.hypot(hits[i, 0] - hits[j, 0], hits[i, 1] - hits[j, 1]) < together:
+                allowed[j] = min(allowed[j], max(now[i], DEEPEST))
     x = y = yaw = 0.0
     v = wanted[3]
     w = wanted[4]
@@ -77,10 +97,12 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array) -> bool:
 
 @numba.njit(cache=True)
 def _away(x: float, y: float, c: float, s: float, discs: Array, hit: Array) -> float:
-    """Return the distance from a hit to the footprint at (x, y), heading (cos, sin)."""
+    """Return the distance from a hit to the discs at its height, at (x, y), heading (cos, sin)."""
     least = 1e9
     for i in range(discs.shape[0]):
+        if discs[i, 3] > hit[3] or discs[i, 4] < hit[2]:
+            continue
         px = x + c * discs[i, 0] - s * discs[i, 1]
         py = y + s * discs[i, 0] + c * discs[i, 1]
-        least = min(least, math.hypot(hit[0] - px, hit[1] - py) - discs[i, 2])
+        least = min(least, math.hypot(hit[0] - px, hit[1] - py) - discs[i, 2] - hit[4])
     return least

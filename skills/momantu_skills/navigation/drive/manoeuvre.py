@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -98,7 +98,11 @@ def quickest_retreat(vehicle: Vehicle, goal: Pose2D, distance: float) -> Retreat
 
 def _arrival(vehicle: Vehicle, pose: Pose2D, speed: Speed, goal: Pose2D) -> graceful.Arrival:
     law = glide.simulate if vehicle.glides else graceful.simulate
-    return law(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
+    low = law(pose, speed, goal, vehicle.limits, vehicle.costmap, vehicle.low_discs)
+    if not vehicle.reaches_over:
+        return low
+    high = law(pose, speed, goal, vehicle.limits, vehicle.tall, vehicle.discs)
+    return replace(low, room=min(low.room, high.room))
 
 
 def _margin(vehicle: Vehicle, goal: Pose2D) -> float:

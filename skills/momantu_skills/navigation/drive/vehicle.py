@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -13,15 +14,16 @@ from momantu_bt.lazy import lazily
 from momantu_bt.marker import Grid, Line
 from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
-from momantu_bt.service import Localization, PlanningScene
+from momantu_bt.service import HeldObject, Localization
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.drive.body import Body, BodyScene
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
-    from momantu_skills.navigation.map import costmap
+    from momantu_skills.navigation.map import costmap, heights
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
@@ -62,7 +64,7 @@ class Vehicle:
         skill: Skill,
         robot: Robot,
         localization: Localization,
-        scene: PlanningScene,
+        scene: BodyScene,
         config: NavigationConfig,
         top: float = 0.0,
         *,
@@ -78,6 +80,7 @@ class Vehicle:
         self.config, self.limits = config, description.base
         self.glides = description.base.sideways > 0.0
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
+        self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
@@ -86,8 +89,10 @@ class Vehicle:
         self.base_discs = self.low_discs = self.discs = footprint.discs(outline)
         self.half_width = footprint.half_width(outline)
         self._outline = self._low_outline = outline
+        self._body = Body(scene, description.base)
         self._low = top + HANDS_OVER
         self._posture: Array | None = None
+        self._held: HeldObject | None = None
         self._base_from_laser: Transform | None = None
         self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
         resolved = description.resolve_use(CAMERA_CARRIER) if self._sees else None
@@ -139,6 +144,7 @@ class Vehicle:
             self._base_from_laser = self._frames.lookup(self._base_frame, scan.frame, scan.stamp)
         rays = Rays.from_scan(scan, self._base_from_laser)
         self._hits = rays.points()
+        self._body.look(self._robot.state(), self._hits)
         self.costmap.see_laser(pose, rays)
         if depth and self._look_due(pose):
             self._see_depth(pose)
@@ -146,10 +152,11 @@ class Vehicle:
 
     def _follow_footprint(self) -> None:
         state = self._robot.state()
-        before = self._posture
-        if before is not None and _moved_little(state.positions, before):
+        before, held = self._posture, self._scene.held
+        if before is not None and _moved_little(state.positions, before) and held is self._held:
             return
-        self._posture = state.positions
+        self._posture, self._held = state.positions, held
+        self._body.follow(state)
         outline = np.asarray(self._scene.footprint(state))
         if not _same(outline, self._outline):
             self._outline, self.discs = outline, footprint.discs(outline)
@@ -194,13 +201,17 @@ class Vehicle:
         return JointPositions(joints, aimed.positions)
 
     def allowed(self, linear: float, angular: float, lateral: float = 0.0) -> float:
-        """Return the share of a command, as of `drive`, that the newest scan allows; 0: none."""
-        return guard.safe_share(
-            (linear, angular, lateral), self.speed(), self.limits, self.base_discs, self._hits
-        )
+        """Return the share of a command, as of `drive`, at which nothing is met; 0: none.
+
+        The base must not meet a hit of the newest scan, arm and load nothing that stands at their
+        height.
+        """
+        command, speed = (linear, angular, lateral), self.speed()
+        share = guard.safe_share(command, speed, self.limits, self.base_discs, self._hits)
+        return min(share, self._body.share(command, speed)) if share > 0.0 else share
 
     def drive(self, linear: float, angular: float, phase: str, lateral: float = 0.0) -> Run:
-        """Command the base for one control period, as far as the newest scan allows.
+        """Command the base for one control period, as far as `allowed` says.
 
         linear, angular, lateral: m/s ahead, rad/s, and m/s to the left of an omnidirectional base.
         """
@@ -244,8 +255,24 @@ class Vehicle:
             yield from self._command(BaseVelocity(0.0, 0.0), phase)
 
     def room(self, pose: Pose2D, *, whole: bool) -> float:
-        """Return the clearance at a pose, m: with all of arm and load (`whole`), or low parts."""
-        return self.costmap.room(pose, self.discs if whole else self.low_discs)
+        """Return the clearance at a pose, m: with all of arm and load (`whole`), or low parts.
+
+        High parts then only keep clear of what the map knows besides surfaces that they get over.
+        """
+        if whole:
+            return self.costmap.room(pose, self.discs)
+        low = self.costmap.room(pose, self.low_discs)
+        return min(low, self.tall.room(pose, self.discs)) if self.reaches_over else low
+
+    @property
+    def reaches_over(self) -> bool:
+        """Whether arm or load have parts that get over the surface that the base drives up to."""
+        return self.discs is not self.low_discs and not np.array_equal(self.discs, self.low_discs)
+
+    @cached_property
+    def tall(self) -> heights.Tall:
+        """What the map knows and what may be higher than that surface."""
+        return heights.taller_than(self._skill.site, self._top)
 
 
 def _moved_little(positions: Array, before: Array) -> bool:

@@ -14,7 +14,7 @@ from momantu_bt.world import Site
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.fields import Field, clearance, sample
-from momantu_skills.navigation.map.maps import GridMap
+from momantu_skills.navigation.map.maps import GridMap, overlaid
 from momantu_skills.navigation.map.sensing import Rays
 
 FAR = 1.0
@@ -41,7 +41,7 @@ class Costmap:
         self.frame = np.array([*grid.origin, grid.resolution])
         self.known = grid.cells != FREE
         if overhang is not None:
-            self.known |= _resampled(overhang, grid)
+            self.known |= overlaid(overhang, grid)
         self._from_known = clearance(grid.cells == OCCUPIED, grid.resolution)
         self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
         self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
@@ -144,17 +144,6 @@ def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple
         return slice(low, min(max(middle + reach + 1, low), end))
 
     return clipped(row, rows), clipped(column, columns)
-
-
-def _resampled(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
-    """The occupied cells of `layer`, resampled to the cells of `grid`."""
-    blocked = np.zeros(grid.cells.shape, dtype=np.bool_)
-    points = layer.centers(layer.cells == OCCUPIED)
-    cells = np.floor((points - np.array(grid.origin)) / grid.resolution).astype(np.int64)
-    rows, columns = grid.cells.shape
-    inside = (cells >= 0).all(axis=1) & (cells[:, 0] < columns) & (cells[:, 1] < rows)
-    blocked[cells[inside, 1], cells[inside, 0]] = True
-    return blocked
 
 
 @numba.njit(cache=True)

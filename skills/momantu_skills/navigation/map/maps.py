@@ -66,3 +66,14 @@ def read_grid(path: Path) -> GridMap:
 def _read_grid(path: Path) -> GridMap:
     picture = maps.read_map(path)
     return GridMap(frozen(picture.cells()), picture.resolution, picture.origin)
+
+
+def overlaid(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
+    """The occupied cells of `layer` in the raster of `grid`: (rows, columns) of `grid`."""
+    blocked = np.zeros(grid.cells.shape, dtype=np.bool_)
+    points = layer.centers(layer.cells == maps.OCCUPIED)
+    cells = np.floor((points - np.array(grid.origin)) / grid.resolution).astype(np.int64)
+    rows, columns = grid.cells.shape
+    inside = (cells >= 0).all(axis=1) & (cells[:, 0] < columns) & (cells[:, 1] < rows)
+    blocked[cells[inside, 1], cells[inside, 0]] = True
+    return blocked

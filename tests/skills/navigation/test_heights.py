@@ -1,0 +1,44 @@
+"""What may be tall: the map's walls and furniture, but no surface that arm and load get over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from momantu_skills.navigation.map.heights import taller_than
+
+from momantu_bt.geometry import Pose2D
+from momantu_bt.world import Site, Surface
+from tests.skills.scenery.flat import write_map
+
+HAND = np.array([[0.0, 0.0, 0.1]])
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Site:
+    """A desk of 0.7 m in the corner of two walls, and a shelf board of 1.4 m elsewhere."""
+    walls = ((2.0, -1.0, 2.15, 3.0), (-1.0, 2.0, 3.0, 2.15))
+    desk, shelf = (1.2, 1.0, 2.0, 2.0), (-0.8, 0.0, -0.4, 1.0)
+    plan = write_map(tmp_path, (*walls, desk, shelf), (-1.0, -1.0, 3.0, 3.0))
+    surfaces = {
+        "desk": Surface(Pose2D(1.6, 1.5), (0.8, 1.0), 0.7, (0.0,)),
+        "shelf": Surface(Pose2D(-0.6, 0.5), (0.4, 1.0), 1.4, (0.0,)),
+    }
+    return Site("corner", map_file=plan, surfaces=surfaces)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "room"),
+    [(1.6, 1.5, 0.3), (1.9, 1.5, 0.0), (1.6, 1.95, -0.05), (1.0, 0.0, 0.9), (-0.6, 0.5, -0.1)],
+)
+def test_over_a_desk_a_hand_has_room_up_to_the_walls(
+    site: Site, x: float, y: float, room: float
+) -> None:
+    assert taller_than(site, 0.7).room(Pose2D(x, y), HAND) == pytest.approx(room, abs=0.03)
+
+
+def test_what_is_higher_than_the_hand_gets_is_in_its_way(site: Site) -> None:
+    over_the_desk, over_the_shelf = Pose2D(1.6, 1.5), Pose2D(-0.6, 0.5)
+    assert taller_than(site, 0.5).room(over_the_desk, HAND) < 0.0
+    assert taller_than(site, 1.4).room(over_the_shelf, HAND) > 0.0
