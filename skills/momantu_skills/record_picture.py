@@ -36,7 +36,7 @@ class RecordPicture(Skill):
     marker: float = In(0.0, unit="m", least=0, most=1, doc="edge of a ChArUco board's marker")
     dictionary: str = In("4X4_50", doc="of a ChArUco board's markers")
     pictures: int = Out(doc="how many pictures the folder has")
-    covered: float = Out(doc="share of the picture that the boards cover, 0 to 1")
+    covered: int = Out(doc="how much of the picture the boards cover, per cent")
     enough: bool = Out(doc="whether picture and angles are covered well")
     also_called = ("save_picture", "capture_board")
     failures = {
@@ -87,9 +87,9 @@ class RecordPicture(Skill):
     def _tell(self, pictures: list[collecting.Picture]) -> None:
         """Log the coverage, and what further pictures should show."""
         missing = collecting.wanted(pictures)
-        self.pictures, self.covered = len(pictures), collecting.share(pictures)
+        self.pictures, self.covered = len(pictures), round(100 * collecting.share(pictures))
         self.enough = not missing
-        self.log(f"{len(pictures)} pictures cover {100 * self.covered:.0f} % of the picture:")
+        self.log(f"{len(pictures)} pictures cover {self.covered} % of the picture:")
         for row in collecting.drawn(pictures):
             self.log(f"  {row}")
         self.log(f"missing: {'; '.join(missing)}" if missing else "nothing is missing")

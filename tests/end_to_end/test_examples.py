@@ -34,7 +34,7 @@ OUTPUTS: dict[str, Any] = {
     "seen": 2,
     "turned": 0.5,
     "pictures": 1,
-    "covered": 0.5,
+    "covered": 50,
     "enough": False,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),

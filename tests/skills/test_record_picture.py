@@ -34,7 +34,7 @@ def record(folder: Path, shown: np.ndarray, board: Board = CHESSBOARD, **more: A
 
 
 def test_pictures_are_kept_until_nothing_is_missing(tmp_path: Path) -> None:
-    folder, covered = tmp_path / "pictures", 0.0
+    folder, covered = tmp_path / "pictures", 0
     for number, (turn, shift) in enumerate(places(1, 6), 1):
         result = record(folder, picture(CHESSBOARD, turn, shift))
         assert result.status == "SUCCESS", result.explain()

@@ -16,6 +16,7 @@ from momantu_skills.view_tag import ViewTag
 from momantu_worlds.scenes.catalogue.tags import picture_edge, tag_cells
 
 from momantu_bt.cli import main
+from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform, quaternion_from_rpy
 from momantu_bt.testing import eye_in_hand_robot, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Card, Painter
@@ -137,3 +138,17 @@ def test_the_verb_reads_views(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     file.write_text(json.dumps(view) + "\n", encoding="utf-8")
     assert main(["calibrate", "hand-eye", "--views", str(file)]) == 2
     assert "line 1: the quaternion has the length 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("code", ["NO_PLAN", "START_IN_COLLISION", "ARM_STUCK"])
+def test_what_stops_the_arm_is_told(
+    before_board: Any, monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    _, run = before_board
+
+    def stopped(*given: Any) -> Any:
+        raise Failure(code, "the arm does not get there")
+
+    monkeypatch.setattr("momantu_skills.gaze.tag_views.plan_view", stopped)
+    result = run(ViewTag, tag="board", at=Pose(PLACE, "odom", 0.0))
+    assert result.code == code
