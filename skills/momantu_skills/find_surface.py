@@ -35,7 +35,7 @@ with lazily():
     from momantu_skills.navigation.drive import trip
     from momantu_skills.navigation.drive.vehicle import Vehicle
     from momantu_skills.navigation.map import believed
-    from momantu_skills.navigation.map.costmap import Costmap
+    from momantu_skills.navigation.map import costmap as costmaps
     from momantu_skills.navigation.plan import lookouts
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
@@ -199,7 +199,7 @@ class FindSurface(Skill):
         low, high = (float(middle[2]) + side * regions.HEIGHT_ERROR for side in (-1.0, 1.0))
         return regions.Region(around, low, high)
 
-    def _judged(self, costmap: Costmap, surface: Surface) -> tuple[Seen, ...]:
+    def _judged(self, costmap: costmaps.Costmap, surface: Surface) -> tuple[Seen, ...]:
         """All level patches that the views show around the place, in the map."""
         if not self._views:
             return ()
@@ -210,7 +210,7 @@ class FindSurface(Skill):
         found = tops.tops_among(points, low, high)
         return tuple(Seen(top, self._why_not(top, costmap, surface)) for top in found)
 
-    def _why_not(self, top: tops.Top, costmap: Costmap, surface: Surface) -> str:
+    def _why_not(self, top: tops.Top, costmap: costmaps.Costmap, surface: Surface) -> str:
         """Why a patch is not the surface; "" if it is like it."""
         if not tops.may_be_part(top, surface):
             return "larger"
@@ -225,7 +225,7 @@ class FindSurface(Skill):
                 return f"rather {name}"
         return "" if tops.is_whole(top, surface) else PART
 
-    def _known_share(self, top: tops.Top, costmap: Costmap, surface: Surface) -> float:
+    def _known_share(self, top: tops.Top, costmap: costmaps.Costmap, surface: Surface) -> float:
         """The share of a patch that the map knows, where the surface is not drawn itself."""
         cells = believed.raster(costmap.grid)
         patch = cells.on(replace(surface, map_from_surface=top.pose, size=top.size))

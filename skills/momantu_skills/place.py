@@ -35,7 +35,7 @@ THINKING = 0.4
 BEHIND = 0.05
 """How far before a point of the object something must be to hide it, m: more than the noise."""
 HIDDEN = 0.4
-"""Share of the object's corners that the robot hides if it cannot tell that the object is gone."""
+"""Share of the object's corners that is hidden if the robot cannot tell how the object stands."""
 BESIDE = 0.02
 """Largest distance from its spot at which the object counts as placed, m."""
 
@@ -202,7 +202,7 @@ class Place(Skill):
         yield from self._look(arm, pose.position, [corners])
         seen = self._judged(arm, pose, held, before)
         hidden = arm.scene.seen_space.hidden(corners, BEHIND)
-        if seen == "gone" and hidden.mean() > HIDDEN and self._camera_is_apart(arm):
+        if seen != "upright" and hidden.mean() > HIDDEN:
             yield from self._clear_the_view(arm, corners)
             yield from self._look(arm, pose.position, [corners])
             seen = self._judged(arm, pose, held, before)
@@ -223,13 +223,11 @@ class Place(Skill):
             self._spot = found
         return "upright"
 
-    def _camera_is_apart(self, arm: Arm) -> bool:
-        return arm.robot.description.resolve_use(CAMERA_CARRIER) != ARM
-
     def _clear_the_view(self, arm: Arm, corners: Array) -> Run:
-        """Take the arm from between the camera and the object (corners (n, 3) in odom), if it can.
+        """Take the hand from before the object (corners (n, 3) in odom), if the arm can.
 
-        In the pose `ready` it does not hide what is before the robot.
+        In the pose `ready` it does not hide what is before the robot, and a camera on the arm is
+        far enough from it to see the whole of it.
         """
         goal = arm.posed(arm.robot.description.named_poses["ready"])
         solid = collision.Obstacle("set down", arm.state.odom_from_base.inverse().apply(corners))
