@@ -227,6 +227,7 @@ class Pick(Skill):
         if verification.stands_there(arm.scene.points, pose, thing, support):
             yield from self._let_go(arm)
             raise Failure("SLIPPED", f"the {thing.category} still stands where it stood")
+        arm.scene.taken(thing, reaching.CUT)
 
     def _give_up(self, arm: Arm, plan: reaching.PickPlan) -> Run:
         """Open the hand and retreat along the approach."""

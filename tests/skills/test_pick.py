@@ -41,6 +41,8 @@ def test_the_can_is_lifted_and_known_to_be_held(
     believed = robot.odom_from_hand @ scene.held.grasp_from_object
     assert np.linalg.norm(believed.position - robot.can.position) < 0.01
     assert scene.last_contact > 0.0
+    joints = scene.scene.model.joints(robot.state())
+    assert scene.scene.world(robot.state(), scene.held, 0.012).touching(joints) == []
 
 
 def test_a_grasp_that_is_cut_off_while_the_fingers_close_is_known(

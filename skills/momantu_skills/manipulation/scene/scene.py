@@ -195,6 +195,14 @@ class Scene:
         cells = np.asarray(unique_rows(places)[0] / PER_METRE)
         self.surroundings = replace(self.surroundings, cells=cells)
 
+    def taken(self, thing: DetectedObject, margin: tuple[float, float, float]) -> None:
+        """Forget what was seen of an object that is in the hand now, where it stood.
+
+        margin: beyond half the object's size along its axes, m.
+        """
+        x, y, z = (edge / 2 + more for edge, more in zip(thing.size, margin, strict=True))
+        self.surroundings = self.surroundings.vacated(thing.pose.transform, (x, y, z))
+
     # the robot's own body
 
     def footprint(

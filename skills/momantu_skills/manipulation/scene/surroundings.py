@@ -114,6 +114,13 @@ class Surroundings:
         beside[beside] = ~np.isfinite(behind)
         return replace(self, cells=kept[~beside])
 
+    def vacated(self, pose: Transform, half_size: tuple[float, float, float]) -> Surroundings:
+        """A copy without all that was seen in a box, or filled in behind it: it was taken away."""
+        left = self.without(pose, half_size, filled=True)
+        if left.faces is None:
+            return left
+        return replace(left, faces=left.faces[~_in_box(left.faces, pose, half_size)])
+
 
 def _in_box(
     points: Array, pose: Transform, half_size: tuple[float, float, float]
