@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from momantu_skills.manipulation.scene import outreach
-from momantu_skills.manipulation.scene.surroundings import KNOWN_HEIGHT, Support
+from momantu_skills.manipulation.scene.surroundings import Support
 
 from momantu_bt.geometry import Transform
 
@@ -58,11 +58,8 @@ def test_what_the_map_knows_the_laser_need_not_show() -> None:
     assert outreach.unexplained(hits, wall[:0]) is hits
 
 
-def test_a_surface_ends_at_its_top_and_keeps_the_lasers_hits_on_it_low() -> None:
+def test_hits_of_the_laser_on_a_surface_are_no_walls() -> None:
     desk = Support(np.array([(1.0, -0.5), (1.8, -0.5), (1.8, 0.5), (1.0, 0.5)]), 0.75)
     base_from_odom = Transform((0.5, 0.0, 0.0))
-    columns = outreach.columns_of_supports([desk], base_from_odom)
-    assert columns[:, 0].min() == pytest.approx(1.5)
-    assert columns[:, 3] == pytest.approx(0.75 - KNOWN_HEIGHT)
     hits = np.array([(1.6, 0.2), (1.47, 0.2), (1.3, 0.2)])
     assert outreach.beside(hits, [desk], base_from_odom) == pytest.approx(hits[2:])

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from momantu_bt.geometry import Array, Transform
-from momantu_skills.manipulation.scene.surroundings import KNOWN_HEIGHT, Support, within
+from momantu_skills.manipulation.scene.surroundings import Support, within
 
 FIELD = 0.04
 """Longest edge of the fields of a part that are covered by a disc each, m: a disc extends at most 8
@@ -16,7 +16,7 @@ mm beyond its field."""
 EXPLAINED = 0.1
 """Distance from what the map knows at which a laser's hit shows nothing new, m."""
 GRID = 0.05
-"""Distance between the columns that stand for a surface, m."""
+"""Greatest height of the pieces in which a column is looked at, m."""
 DRAWN = 0.05
 """Distance beside a surface at which a laser's hit belongs to it, m."""
 
@@ -50,32 +50,13 @@ def _covering(part: Array) -> Array:
     return np.column_stack([middle + own @ axes.T, np.full(len(own), np.hypot(*edges) / 2)])
 
 
-def columns_of_supports(supports: Sequence[Support], base_from_odom: Transform) -> Array:
-    """Columns (n, 5), base frame, that stand for surfaces, up to where one may lie at least.
+def standing(points: Array, height: float, radius: float) -> Array:
+    """Columns (n, 5) at points (n, 2) that stand on the floor, all of one height, m.
 
     A row has x, y, the lowest and the highest point, and the radius, m.
     """
-    rows = [np.empty((0, 5))]
-    for support in supports:
-        low, high = support.outline.min(axis=0), support.outline.max(axis=0)
-        x, y = (np.arange(a, b + GRID, GRID) for a, b in zip(low, high, strict=True))
-        points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-        points = points[within(points, support.outline)]
-        top = np.full(len(points), support.height - KNOWN_HEIGHT)
-        placed = base_from_odom.apply(np.column_stack([points, top]))
-        rows.append(_columns(placed[:, :2], placed[:, 2] - support.depth, placed[:, 2], GRID / 2))
-    return np.vstack(rows)
-
-
-def columns_of_cells(cells: Array, edge: float) -> Array:
-    """The same for cubes at centres (n, 3), base frame."""
-    return _columns(cells[:, :2], cells[:, 2] - edge / 2, cells[:, 2] + edge / 2, edge / 2)
-
-
-def standing(points: Array, height: float, radius: float) -> Array:
-    """The same for columns at points (n, 2) that stand on the floor, all of one height, m."""
-    zeros = np.zeros(len(points))
-    return _columns(points, zeros, zeros + height, radius)
+    rest = np.tile((0.0, height, radius), (len(points), 1))
+    return np.column_stack([points, rest])
 
 
 def unexplained(points: Array, known: Array) -> Array:
@@ -84,10 +65,6 @@ def unexplained(points: Array, known: Array) -> Array:
         return points
     away, _ = cKDTree(known).query(points, distance_upper_bound=EXPLAINED)
     return np.asarray(points[~np.isfinite(away)])
-
-
-def _columns(points: Array, low: Array, high: Array, radius: float) -> Array:
-    return np.column_stack([points, low, high, np.full(len(points), radius)])
 
 
 def cut(columns: Array) -> Array:

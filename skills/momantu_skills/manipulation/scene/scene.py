@@ -304,17 +304,11 @@ class Scene:
         """See `BodyScene.solids`."""
         base_from_odom = state.odom_from_base.inverse()
         supports = self._supports(state)
-        seen = supports[: len(self.surroundings.supports)]
-        cells = base_from_odom.apply(self._uncovered(self.surroundings.cells, seen))
         tall, radius = self._tall_near(state, reach)
         hits = outreach.unexplained(outreach.beside(hits, supports, base_from_odom), tall)
-        columns = [
-            outreach.columns_of_supports(supports, base_from_odom),
-            outreach.columns_of_cells(cells, self.config.voxel),
-            outreach.standing(hits, WALL, 0.0),
-            outreach.standing(tall, WALL, radius),
-        ]
-        found = np.vstack(columns)
+        found = np.vstack(
+            [outreach.standing(hits, WALL, 0.0), outreach.standing(tall, WALL, radius)]
+        )
         return np.asarray(found[np.hypot(found[:, 0], found[:, 1]) < reach])
 
     def _tall_near(self, state: RobotState, reach: float) -> tuple[Array, float]:

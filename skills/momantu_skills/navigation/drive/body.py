@@ -38,10 +38,10 @@ class BodyScene(PlanningScene, Protocol):
         ...
 
     def solids(self, state: RobotState, hits: Array, reach: float) -> Array:
-        """Columns (n, 5) within `reach` m of the base: what pictures, laser and maps know there.
+        """Columns (n, 5) within `reach` m of the base: what laser and maps know there.
 
-        hits: points (m, 2) that the laser met, base frame, m. What the maps or the laser know is as
-        tall as a wall, unless it is a surface.
+        hits: points (m, 2) that the laser met, base frame, m. All of it is as tall as a wall;
+        surfaces are left out.
         """
         ...
 
