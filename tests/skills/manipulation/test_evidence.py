@@ -57,6 +57,13 @@ def test_fingers_that_press_on_nothing_that_weighs_are_jammed_once_they_were_rai
     assert weighed([pressing, of_weight(weight, raised=True)]) is Grip.EMPTY
 
 
+def test_a_robot_that_cannot_weigh_believes_fingers_that_press_unless_it_sees_through() -> None:
+    alone = of_fingers(PRESSING, 0.1, CONFIG, alone=True)
+    assert weighed([alone]) is Grip.HELD
+    assert weighed([alone, of_picture(NOTHING_SEEN, raised=True)]) is Grip.HELD
+    assert weighed([alone, of_picture(View(0, 0.9), raised=True)]) is Grip.UNKNOWN
+
+
 @pytest.mark.parametrize(
     ("view", "grip"),
     [(View(0, 0.9), Grip.EMPTY), (NOTHING_SEEN, Grip.UNKNOWN), (View(80, 0.0), Grip.UNKNOWN)],

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from momantu_skills.manipulation.hand.between_pads import between_pads
 from momantu_skills.manipulation.scene.payload import BIAS, Payload, mean_weight
-from momantu_worlds.robots import fetch
 
 from momantu_bt.frames import FrameBuffer
 from momantu_bt.geometry import Transform, quaternion_from_axis_angle
@@ -112,20 +111,10 @@ def test_a_hand_whose_own_weight_is_measured_is_not_weighed_when_turned(
     assert (wrist.payload.weigh(wrist.robot) is not None) is told
 
 
-def test_a_hand_that_no_joint_raises_weighs_nothing() -> None:
-    plain = small_robot()
-    sensors = {n: s for n, s in plain.sensors.items() if s.kind != "wrench"}
-    description = plain.model_copy(update={"sensors": sensors})
-    straight_up = dict.fromkeys(description.groups["arm"].joints, 0.0)
+def test_a_robot_without_a_sensor_at_the_wrist_weighs_nothing() -> None:
+    description = without_wrist(small_robot())
     payload = Payload(description, FrameBuffer(description.kinematics()))
-    robot = ScriptedRobot(description, joints=straight_up)
-    tree, frame = description.kinematics(), description.hand.frame
-    at = tree.base_from_frame(frame, straight_up).position
-    levers = [
-        abs(tree.base_from_frame(frame, {**straight_up, name: 0.01}).position[2] - at[2])
-        for name in straight_up
-    ]
-    assert (payload.weigh(robot) is None) is (math.hypot(*levers) < 0.001)
+    assert payload.weigh(ScriptedRobot(description)) is None
 
 
 @pytest.mark.parametrize("held", [True, False])
@@ -181,38 +170,6 @@ def test_a_hand_counts_as_raised_above_where_its_fingers_moved(
 def without_wrist(description: Any) -> Any:
     kept = {n: s for n, s in description.sensors.items() if s.kind != "wrench"}
     return description.model_copy(update={"sensors": kept})
-
-
-@pytest.mark.parametrize("weight", [0.0, 0.5, 3.9])
-@pytest.mark.parametrize("pose", ["carry", "ready"])
-def test_without_a_sensor_at_the_wrist_the_joints_tell(weight: float, pose: str) -> None:
-    """By virtual work: joint i holds the weight with F dz/dq_i."""
-    description = without_wrist(fetch())
-    robot = ScriptedRobot(description, joints=description.named_poses[pose])
-    tree, frame = description.kinematics(), description.hand.frame
-    payload = Payload(description, FrameBuffer(tree))
-
-    def rise(name: str) -> float:
-        joints, step = dict(robot.joints), 1e-5
-        low = tree.base_from_frame(frame, joints).position[2]
-        joints[name] = joints.get(name, 0.0) + step
-        return float(tree.base_from_frame(frame, joints).position[2] - low) / step
-
-    def loaded(newtons: float) -> None:
-        state = robot.state()
-        robot.state = lambda: replace(  # type: ignore[method-assign]
-            state, efforts=frozen(np.array([newtons * rise(n) for n in state.names]))
-        )
-
-    loaded(0.0)
-    robot.gripper_width = 0.1
-    for _ in range(3):
-        payload.update(robot, replace(robot.state(), gripper_width=0.1))
-    loaded(weight)
-    measured = payload.weigh(robot)
-    assert measured is not None
-    assert measured.value == pytest.approx(weight, abs=0.02)
-    assert 0.1 < measured.noise < 0.8
 
 
 @pytest.mark.parametrize(("moves", "weighed"), [(False, True), (True, False)])

@@ -26,6 +26,9 @@ SURE = math.log(100.0)
 """Sum from which the answer is given: a hundred to one."""
 SHUT, OPENED, FREE, PRESSING = (0.001, 0.26), (0.001, 0.11), (0.001, 0.22), (0.996, 0.40)
 """How probable each reading of the fingers is with something in the hand, and with nothing."""
+ALONE = (0.996, 0.005)
+"""The same of fingers that press in a hand that nothing weighs: no other sense tells jammed ones,
+which are rarer in use than among those states, so they count as one in two hundred."""
 SEEN, THROUGH = (0.14, 0.016), (0.001, 0.12)
 """The same of a picture that shows something between the pads, and of one that shows through."""
 LEANING = (0.19, 0.016)
@@ -75,11 +78,13 @@ def agree(evidence: Sequence[Evidence]) -> bool:
     return min(each.odds for each in evidence) >= 0.0 or max(e.odds for e in evidence) <= 0.0
 
 
-def of_fingers(fingers: Fingers, widest: float, config: SceneConfig) -> Evidence:
+def of_fingers(
+    fingers: Fingers, widest: float, config: SceneConfig, *, alone: bool = False
+) -> Evidence:
     """Fingers that press are stopped by something, or jammed; shut ones hold little.
 
     widest: of the hand, m. Whether they press is as sure as their force is above or below the
-    least one.
+    least one. alone: the robot has nothing that weighs the hand.
     """
     if math.isnan(fingers.width):
         return Evidence("fingers", 0.0, "the fingers have not been read")
@@ -90,7 +95,7 @@ def of_fingers(fingers: Fingers, widest: float, config: SceneConfig) -> Evidence
         return Evidence("fingers", _odds(*SHUT), text)
     press = 0.5 * math.erfc((config.least_effort - fingers.effort) / NOISE / math.sqrt(2.0))
     idle = OPENED if fingers.width > OPEN * widest else FREE
-    pairs = zip(PRESSING, idle, strict=True)
+    pairs = zip(ALONE if alone else PRESSING, idle, strict=True)
     return Evidence("fingers", _odds(*(press * p + (1.0 - press) * f for p, f in pairs)), text)
 
 

@@ -18,7 +18,7 @@ from momantu_skills.manipulation.hand.evidence import (
     weighed,
 )
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
-from momantu_skills.manipulation.scene.payload import Weight, mean_weight
+from momantu_skills.manipulation.scene.payload import Weight, mean_weight, wrist_sensor
 from momantu_skills.perception.camera.snapshot import take
 
 FEELING = 10
@@ -53,8 +53,8 @@ def _in_doubt(found: Sequence[Evidence]) -> bool:
 
 def _felt(robot: Robot, service: ArmScene, weights: Sequence[Weight | None]) -> list[Evidence]:
     """What fingers and weight say; weights: earlier readings."""
-    widest = robot.description.hand.max_width
-    found = [of_fingers(service.holding.fingers, widest, service.scene.config)]
+    widest, alone = robot.description.hand.max_width, wrist_sensor(robot.description) is None
+    found = [of_fingers(service.holding.fingers, widest, service.scene.config, alone=alone)]
     known = [each for each in (*weights, service.payload.weigh(robot)) if each is not None]
     if known:
         found.append(of_weight(mean_weight(known), raised=service.payload.raised))

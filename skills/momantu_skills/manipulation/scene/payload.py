@@ -1,4 +1,4 @@
-"""The weight in the hand: the load on the wrist or the joints, beside that of the empty hand."""
+"""The weight in the hand: the load on the wrist, beside that of the empty hand."""
 
 from __future__ import annotations
 
@@ -37,10 +37,6 @@ BIAS = 0.6
 """Standard deviation of the load while the empty hand has not been measured, N, per axis."""
 NOISE = 0.25
 """Standard deviation of one reading, N."""
-JOINT_NOISE = 0.3
-"""Standard deviation of a joint's measured effort, Nm or N."""
-LEAST_LEVER = 0.1
-"""Least lever of all joints together by which they tell a weight, m."""
 MEDIAN = 1.25
 """Standard deviation of a median, relative to that of a mean."""
 RAISED = 0.03
@@ -81,12 +77,7 @@ def wrist_sensor(description: RobotDescription) -> str | None:
 
 
 class Payload:
-    """Learns the load of the empty hand while the hand is open, and weighs what it holds.
-
-    The load is measured at the wrist. A robot without a sensor there tells it by the efforts of its
-    joints: joint i holds a weight F with J_i F, where J_i is the height that the hand gains per
-    motion of the joint, so F = sum(J_i e_i) / sum(J_i^2) by least squares.
-    """
+    """Learns the load of the empty hand while the hand is open, and weighs what it holds."""
 
     def __init__(self, description: RobotDescription, frames: FrameBuffer) -> None:
         self._description, self._frames = description, frames
@@ -115,8 +106,8 @@ class Payload:
             return
         load = self._load(robot)
         if load is not None:
-            self._empty.append(load.force)
-            self._up, self._measured = load.up, state.stamp
+            self._empty.append(load[0])
+            self._up, self._measured = load[1], state.stamp
 
     def _follow(self, state: RobotState, frame: str, open_: bool) -> None:
         """Note how high the hand is above its lowest place since the fingers moved."""
@@ -139,14 +130,15 @@ class Payload:
         load = self._load(robot)
         if load is None:
             return None
+        force, up = load
         if self._up is None:
-            return Weight(-float(load.force @ load.up), load.noise, BIAS)
+            return Weight(-float(force @ up), NOISE, BIAS)
         empty = np.median(self._empty, axis=0)
-        turned = math.acos(float(np.clip(self._up @ load.up, -1.0, 1.0)))
+        turned = math.acos(float(np.clip(self._up @ up, -1.0, 1.0)))
         if np.linalg.norm(empty) > HEAVY and turned > TURNED:
             return None
-        shared = MEDIAN * load.noise / math.sqrt(len(self._empty))
-        return Weight(-float((load.force - empty) @ load.up), load.noise, shared)
+        shared = MEDIAN * NOISE / math.sqrt(len(self._empty))
+        return Weight(-float((force - empty) @ up), NOISE, shared)
 
     def _rests(self, state: RobotState) -> bool:
         """Whether the robot stands still: by its speeds, or by where its joints were before.
@@ -161,47 +153,18 @@ class Payload:
         moved = float(np.abs(state.positions - before.positions).max(initial=0.0))
         return moved < AT_REST * (state.stamp - before.stamp)
 
-    def _load(self, robot: Robot) -> _Load | None:
+    def _load(self, robot: Robot) -> tuple[Array, Array] | None:
+        """The force (3,) and the upward direction (3,), both in the sensor's frame."""
         name = wrist_sensor(robot.description)
         if name is None:
-            return self._joint_load(robot.state())
+            return None
         try:
             reading = robot.read(name)
             rotation = self._frames.lookup(ODOM, reading.frame, reading.stamp).rotation
         except Failure:
             return None
         assert isinstance(reading, WrenchReading)
-        return _Load(reading.force, rotation[2], NOISE)
-
-    def _joint_load(self, state: RobotState) -> _Load | None:
-        """By the efforts of the joints that raise the hand; None if none does."""
-        joints, tree = state.joints(), self._frames.kinematics
-        frame = self._description.hand.frame
-        hand = tree.base_from_frame(frame, joints).position
-        rises, efforts, place = [], [], np.eye(4)
-        for joint in tree.chain(frame):
-            at = place @ joint.parent_from_joint.matrix
-            if joint.name in joints:
-                axis = at[:3, :3] @ np.asarray(joint.axis)
-                slides = joint.kind == "prismatic"
-                rises.append((axis if slides else np.cross(axis, hand - at[:3, 3]))[2])
-                efforts.append(state.efforts[state.names.index(joint.name)])
-            place = place @ joint.transform(joint.position(joints))
-        lever = float(np.dot(rises, rises))
-        if lever < LEAST_LEVER**2:
-            return None
-        up = np.array([0.0, 0.0, 1.0])
-        weight = float(np.dot(rises, efforts)) / lever
-        return _Load(-weight * up, up, JOINT_NOISE / math.sqrt(lever))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Load:
-    """A load on the hand. force: (3,), N. up: (3,) upwards, its frame. noise: of the force, N."""
-
-    force: Array
-    up: Array
-    noise: float
+        return reading.force, rotation[2]
 
 
 def at_rest(state: RobotState) -> bool:
