@@ -7,8 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_camera
 from momantu_bt.skill import Failure, In, Out, Run, Skill, compute
@@ -16,10 +14,9 @@ from momantu_bt.symptom import Symptom
 from momantu_skills.perception.camera.standing import until_standing
 
 with lazily():
-    import cv2
-
     from momantu_skills.calibration.camera import board as boards
     from momantu_skills.calibration.camera import collecting
+    from momantu_skills.calibration.camera import pictures as files
     from momantu_skills.calibration.errors import CalibrationError
 
 BUDGET = 0.1
@@ -72,7 +69,7 @@ class RecordPicture(Skill):
             raise Failure("BAD_BOARD", f"{folder} has pictures of {other!r}; name another folder")
         yield from until_standing(robot)
         image = read_camera(robot)
-        gray = np.asarray(cv2.cvtColor(image.color, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
+        gray = files.gray_of(image.color)
         seen: boards.Seen | None = yield from compute(
             partial(boards.find, given, gray), budget=BUDGET
         )
@@ -97,7 +94,7 @@ class RecordPicture(Skill):
 
 def _keep(folder: Path, picture: collecting.Picture, color: Any) -> None:
     """Write the picture and its line; raises Failure PICTURE_NOT_WRITTEN."""
-    data = cv2.imencode(".png", cv2.cvtColor(color, cv2.COLOR_RGB2BGR))[1].tobytes()
+    data = files.png_of(color)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / picture.name).write_bytes(data)

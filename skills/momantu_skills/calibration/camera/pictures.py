@@ -72,6 +72,16 @@ def _gray(file: Path) -> NDArray[np.uint8]:
     return np.asarray(gray)
 
 
+def gray_of(color: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A picture (h, w, 3), RGB, as shades of gray (h, w)."""
+    return np.asarray(cv2.cvtColor(color, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
+
+
+def png_of(color: NDArray[np.uint8]) -> bytes:
+    """A picture (h, w, 3), RGB, as a PNG file."""
+    return bytes(cv2.imencode(".png", cv2.cvtColor(color, cv2.COLOR_RGB2BGR))[1].tobytes())
+
+
 def _too_few(folder: Path, board: Board, count: int, files: list[Path]) -> str:
     how = f"{count} of {len(files)} pictures show" if count else "no picture shows"
     said = f"in {folder}, {how} a {board}; at least {LEAST_PICTURES} are needed"
