@@ -11,17 +11,9 @@ from pathlib import Path
 
 import pyapriltags
 
+from momantu_bt.tags import FAMILIES
+
 TABLE = Path(__file__).parents[1] / "worlds/momantu_worlds/scenes/catalogue/tag_families.json"
-FAMILIES = (
-    "tag36h11",
-    "tag25h9",
-    "tag16h5",
-    "tagStandard41h12",
-    "tagStandard52h13",
-    "tagCircle21h7",
-    "tagCircle49h12",
-    "tagCustom48h12",
-)
 MOST = 587
 """Most ids of a family in the table: all of 36h11."""
 

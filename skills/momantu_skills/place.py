@@ -121,9 +121,14 @@ class Place(Skill):
         """The failure where no pick has reported what the hand holds, as its senses have it."""
         found = yield from weighing.weigh(self, arm.robot, self.planning_scene)
         said, data = weighing.told(found), weighing.odds(found)
-        if evidence.weighed(found) is not evidence.Grip.HELD:
+        grip = evidence.weighed(found)
+        if grip is evidence.Grip.EMPTY:
             return Failure(
                 "NOTHING_HELD", f"there is nothing in the hand to set down: {said}", **data
+            )
+        if grip is evidence.Grip.UNKNOWN:
+            return Failure(
+                "NOTHING_HELD", f"no pick has reported anything in the hand, and {said}", **data
             )
         return Failure(
             "HELD_UNKNOWN",
