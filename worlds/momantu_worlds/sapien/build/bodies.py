@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import sapien
 
-from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.geometry import Array
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT
+from momantu_worlds.sapien.build.collision_shapes import collision_shapes
 from momantu_worlds.sapien.build.meshes import body_mesh, map_triangles, volume
 from momantu_worlds.sapien.build.moving import MovingBody
 from momantu_worlds.sapien.build.render_shapes import render_shape
 from momantu_worlds.sapien.build.truth import Truth
-from momantu_worlds.sapien.poses import pose_of
-from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, Hull, Part, Sphere
+from momantu_worlds.sapien.poses import Z_FROM_X, pose_for_sapien, pose_of
+from momantu_worlds.scenes.geometry.bodies import Body, Episode
 
 FLOOR = "floor"
 """Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
 FLOOR_FRICTION = 0.8
-Z_FROM_X = Transform((0, 0, 0), quaternion_from_axis_angle((0, 1, 0), -math.pi / 2))
-"""SAPIEN's cylinders lie along x and its planes face x; those of this project are along z."""
 
 
 def add_bodies(
@@ -103,7 +100,7 @@ def look_of(body: Body) -> Any:
     for part in body.parts:
         if part.visual:
             shape = render_shape(part)
-            shape.local_pose = pose_of(_sapien_pose(part))
+            shape.local_pose = pose_of(pose_for_sapien(part))
             look.attach(shape)
     look.name = body.name
     return look
@@ -118,39 +115,10 @@ def _physics(body: Body) -> Any:
     colliding = [part for part in body.parts if part.collision]
     total = 0.0 if body.static else sum(volume(part.geometry) for part in colliding)
     for part in colliding:
-        shape = _collision_shape(part, material)
-        shape.local_pose = pose_of(_sapien_pose(part))
-        shape.set_collision_groups([1, 1, FLOOR_BIT if body.category == FLOOR else 0, 0])
-        if not body.static:
-            shape.set_density(body.mass / total)
-        component.attach(shape)
+        for shape in collision_shapes(part, material, static=body.static):
+            shape.set_collision_groups([1, 1, FLOOR_BIT if body.category == FLOOR else 0, 0])
+            if not body.static:
+                shape.set_density(body.mass / total)
+            component.attach(shape)
     component.name = body.name
     return component
-
-
-def _collision_shape(part: Part, material: Any) -> Any:
-    geometry, physx = part.geometry, sapien.physx
-    if isinstance(geometry, Box):
-        half = [edge / 2 for edge in geometry.size]
-        return physx.PhysxCollisionShapeBox(half_size=half, material=material)
-    if isinstance(geometry, Cylinder):
-        return physx.PhysxCollisionShapeCylinder(
-            radius=geometry.radius, half_length=geometry.height / 2, material=material
-        )
-    if isinstance(geometry, Sphere):
-        return physx.PhysxCollisionShapeSphere(radius=geometry.radius, material=material)
-    if isinstance(geometry, Hull):
-        vertices = np.asarray(geometry.vertices, dtype=np.float32)
-        return physx.PhysxCollisionShapeConvexMesh(
-            vertices=vertices, scale=[1, 1, 1], material=material
-        )
-    raise TypeError(
-        f"a {type(geometry).__name__} cannot collide; use Box, Cylinder, Sphere or Hull"
-    )
-
-
-def _sapien_pose(part: Part) -> Transform:
-    """Pose of SAPIEN's own shape at which the part has its described pose."""
-    if isinstance(part.geometry, Cylinder):
-        return part.body_from_part @ Z_FROM_X
-    return part.body_from_part
