@@ -49,9 +49,11 @@ TOP_PENALTY = 3.0
 """Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
 """Cost per rad of tilt, s: the same disadvantages to a smaller extent."""
-OFF_CENTRE_PENALTY = 4.0
-"""Cost of a distance from HEIGHTS[0], s per share of the height: an object held far from its middle
-may swing."""
+SWING_PENALTY = 150.0
+"""Cost, s per metre, of holding an object above its middle: it swings when the hand turns, and what
+hangs otherwise in the hand than it was grasped is set down leaning. A can of 13 cm that was held at
+`HEIGHTS[2]`, 36 mm above its middle, turned by up to 38 degrees; at its middle none did. So a hand
+rather leans while it holds the middle."""
 RIM_WALL = 0.010
 """Assumed thickness of a wall between the pads, m: a bowl's is 3 to 8 mm and leans."""
 THINNEST = 0.0025
@@ -173,7 +175,7 @@ def _from_side(
         back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
         if back is None:
             continue
-        penalty = TILT_PENALTY * tilt + OFF_CENTRE_PENALTY * (share - HEIGHTS[0])
+        penalty = TILT_PENALTY * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 
