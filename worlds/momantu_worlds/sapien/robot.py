@@ -131,8 +131,10 @@ class SimulatedRobot:
             self.base.command(goal, self._now())
         elif kind is ActuatorKind.JOINTS:
             self.joint_drives[actuator].command(goal, self._now())
-        elif self.gripper is not None:
+        elif self.gripper is not None and actuator == self._description.hand.actuator:
             self.gripper.command(goal)
+        else:
+            raise ValueError(f"{actuator} is not the end effector's gripper: nothing moves it")
 
     def stop(self, actuator: str) -> None:
         """Brake at the limits; the gripper keeps its last force."""
@@ -266,5 +268,7 @@ class SimulatedRobot:
         self._model.articulation.set_qvel(np.zeros(len(positions), dtype=np.float32))
         for drive in self.joint_drives.values():
             drive.place(np.array([positions[self._model.index[n]] for n in drive.names]))
+        for name in self._model.idle:
+            self._model.joints[name].set_drive_target(positions[self._model.index[name]])
         if self.gripper is not None and effector is not None:
             self.gripper.place(effector.max_width)

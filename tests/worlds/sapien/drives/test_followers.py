@@ -11,6 +11,8 @@ import pytest
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.followers import Followers, mimicking
 
+from momantu_bt.robot import ActuatorKind
+
 PHYSICS = Physics()
 
 
@@ -27,7 +29,7 @@ class FakeJoint:
         self.gains = gains
 
 
-def described(folder: Path, *driven: str) -> Any:
+def described(folder: Path, *driven: str, kind: ActuatorKind = ActuatorKind.JOINTS) -> Any:
     source = folder / "robot.urdf"
     joints = "".join(
         f'<joint name="{name}" type="revolute"><parent link="a"/><child link="{name}_link"/>'
@@ -39,8 +41,8 @@ def described(folder: Path, *driven: str) -> Any:
     )
     links = "".join(f'<link name="{name}"/>' for name in ("a", "leader_link", "follower_link"))
     source.write_text(f'<robot name="r">{links}{joints}</robot>')
-    actuators = {"arm": SimpleNamespace(joints=driven)}
-    return SimpleNamespace(urdf=source, actuators=actuators)
+    actuators = {"arm": SimpleNamespace(kind=kind, joints=driven)}
+    return SimpleNamespace(urdf=source, actuators=actuators, end_effector=None)
 
 
 @pytest.mark.parametrize("at", [-1.5, 0.0, 0.3])
@@ -58,3 +60,9 @@ def test_a_joint_that_an_actuator_moves_follows_nothing(tmp_path: Path) -> None:
     index = {"leader": 0, "follower": 1}
     both = described(tmp_path, "leader", "follower")
     assert mimicking(both, joints, index, PHYSICS) == {}
+
+
+def test_a_finger_of_a_gripper_that_is_no_end_effector_follows(tmp_path: Path) -> None:
+    joints = {"leader": FakeJoint(), "follower": FakeJoint()}
+    second = described(tmp_path, "leader", "follower", kind=ActuatorKind.GRIPPER)
+    assert list(mimicking(second, joints, {"leader": 0, "follower": 1}, PHYSICS)) == ["follower"]

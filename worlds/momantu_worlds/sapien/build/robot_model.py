@@ -17,7 +17,7 @@ from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, ignore_bits
 from momantu_worlds.sapien.config import Physics
 from momantu_worlds.sapien.drives.fingers import Finger, couple, fingers_of
-from momantu_worlds.sapien.drives.followers import Follower, mimicking
+from momantu_worlds.sapien.drives.followers import Follower, mimicking, unused_grippers
 from momantu_worlds.sapien.drives.gains import Gains, arm_gains
 
 MANY_TURNS = 1e3
@@ -34,7 +34,7 @@ class RobotModel:
 
     joints: active joints by name. index: their index in qpos. links: by name. gains: of each arm
     and head joint, and of finger tips. fingers: the gripper's, by joint. mimics: joints that mimic
-    others, without the gripper's.
+    others, without the gripper's. idle: joints of grippers that nobody moves, held still.
     """
 
     articulation: Any
@@ -44,6 +44,7 @@ class RobotModel:
     gains: Mapping[str, Gains]
     fingers: Mapping[str, Finger]
     mimics: Mapping[str, Follower]
+    idle: tuple[str, ...] = ()
 
     def positions(self) -> Array:
         """All true joint positions now (dof,)."""
@@ -90,6 +91,12 @@ def build_robot(
         arm_gains(description, simulation, physics),
         fingers_of(description, simulation, joints, physics),
         mimicking(description, joints, index, physics),
+    )
+    model.idle = tuple(
+        name
+        for actuator in unused_grippers(description).values()
+        for name in actuator.joints
+        if name not in model.mimics
     )
     _set_drives(model, description, simulation, physics)
     couple(articulation, model.fingers, physics)
@@ -216,3 +223,5 @@ def _set_drives(
         if actuator.kind is ActuatorKind.JOINTS:
             for name in actuator.joints:
                 model.gains[name].give(model.joints[name])
+    for name in model.idle:
+        model.gains[name].give(model.joints[name])

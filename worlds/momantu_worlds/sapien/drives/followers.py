@@ -10,7 +10,7 @@ import numpy as np
 
 from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.geometry import Array
-from momantu_bt.robot import RobotDescription
+from momantu_bt.robot import Actuator, ActuatorKind, RobotDescription
 from momantu_worlds.sapien.config import Physics
 
 FAR = 1e4
@@ -48,6 +48,19 @@ class Followers:
             each.joint.set_drive_target(each.where(positions))
 
 
+def unused_grippers(description: RobotDescription) -> dict[str, Actuator]:
+    """The grippers that are not the end effector's, such as a second arm's: no command moves them.
+
+    Without a drive their fingers would dangle.
+    """
+    hand = description.end_effector
+    return {
+        name: actuator
+        for name, actuator in description.actuators.items()
+        if actuator.kind is ActuatorKind.GRIPPER and (hand is None or name != hand.actuator)
+    }
+
+
 def mimicking(
     description: RobotDescription,
     joints: Mapping[str, Any],
@@ -58,7 +71,13 @@ def mimicking(
 
     joints: SAPIEN's.
     """
-    driven = {name for actuator in description.actuators.values() for name in actuator.joints}
+    idle = unused_grippers(description)
+    driven = {
+        joint
+        for name, actuator in description.actuators.items()
+        if name not in idle
+        for joint in actuator.joints
+    }
     leads, found = np.array([-FAR, FAR]), {}
     for one in read_urdf(description.urdf).joints:
         mimic = one.mimic
