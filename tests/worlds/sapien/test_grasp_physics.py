@@ -110,3 +110,31 @@ def test_stopping_the_gripper_keeps_its_grip() -> None:
     lift(simulator)
     assert simulator.truth.pose("can").position[2] > hand().position[2] + 0.1
     assert simulator.robot.state().gripper_effort > 30.0
+
+
+def pressed(simulator: Simulator) -> np.ndarray:
+    """Directions (n, 3) in which pads press on the can, each in the hand's frame."""
+    world_from_hand = simulator.truth.link("gripper_link").matrix[:3, :3]
+    found = [
+        np.sum([point.impulse for point in contact.points], axis=0)
+        for contact in simulator.scene.get_contacts()
+        if "can" in (names := [body.entity.name for body in contact.bodies])
+        and any("finger" in name for name in names)
+    ]
+    return np.array([world_from_hand.T @ each / np.linalg.norm(each) for each in found])
+
+
+def test_a_hand_that_turns_presses_along_its_own_axes() -> None:
+    simulator = gripped(60.0)
+    lift(simulator)
+    before = hand_from_can(simulator)
+    for tick in range(100):
+        simulator.robot.command("base", BaseVelocity(0.0, 1.2 if tick < 70 else 0.0))
+        simulator.step()
+        if tick == 60:
+            along = pressed(simulator)
+            assert len(along) == 2
+            assert np.abs(along[:, 1]).min() > math.cos(math.radians(2.0))
+    after = hand_from_can(simulator)
+    assert np.abs(after.position - before.position).max() < 1e-3
+    assert after.angle_to(before) < math.radians(1.0)

@@ -22,6 +22,7 @@ from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.drives.base import BaseDrive
 from momantu_worlds.sapien.drives.fingers import Hanging, Tips
 from momantu_worlds.sapien.drives.followers import Followers
+from momantu_worlds.sapien.drives.fresh_contacts import FreshContacts
 from momantu_worlds.sapien.drives.gripper import GripperDrive
 from momantu_worlds.sapien.drives.joints import JointDrive
 from momantu_worlds.sapien.drives.proprioception import Encoders, Odometry, prismatic_joints
@@ -89,6 +90,8 @@ class SimulatedRobot:
             for drive in self.joint_drives.values()
         ]
         self.gripper = None if hand is None else self._gripper_drive(simulation, hand)
+        held_by = () if hand is None else hand.touch_links
+        self._hand_contacts = FreshContacts(model.links[name] for name in held_by)
         self._followers = Followers(model.mimics.values())
         self._place(start, pose)
 
@@ -171,6 +174,7 @@ class SimulatedRobot:
         if self.gripper is not None:
             self.gripper.apply(positions)
         self._followers.follow(positions)
+        self._hand_contacts.refresh()
 
     def end_tick(self) -> None:
         """Update odometry with the tick's motion; the clock shows the end of the tick already."""
