@@ -17,6 +17,11 @@ from momantu_skills.manipulation.model.urdf import UrdfSource, base_urdf
 from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton
 
 
+TOUCH = 1e-6
+"""Least distance, m, at which links count as meeting. At 0 coal takes hulls for apart that have one
+middle, such as those of tubes that slide in each other."""
+
+
 class Body:
     """Kinematics and shapes of everything below the base frame; poses are in that frame.
 
@@ -155,7 +160,7 @@ class Contacts:
         self._shapes, self._data = self._geometry.createData(), body.pin.createData()
         for index, owner in enumerate(self._owner):
             own_margin = (close or {}).get(self.pairs[owner], margin)
-            self._shapes.collisionRequests[index].security_margin = own_margin
+            self._shapes.collisionRequests[index].security_margin = max(own_margin, TOUCH)
 
     def meeting(self, q: Array) -> NDArray[np.bool_]:
         """(n,) which of the pairs meet at joints (nq,)."""
