@@ -11,6 +11,8 @@ from momantu_skills.robot_setup.find.matrix import SAMPLES, CollisionMatrix, Why
 from momantu_skills.robot_setup.urdf.body import Body, Contacts
 from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
 
+from tests.skills.robot_setup.conftest import body_of, box, joint, link
+
 
 @pytest.fixture(scope="module")
 def body(rolling_urdf: Path, tmp_path_factory: pytest.TempPathFactory) -> Body:
@@ -75,3 +77,30 @@ def test_joints_that_follow_do_so_in_samples(
     left, right = bolted.index["left_hinge"], bolted.index["right_hinge"]
     for q in bolted.random_configurations(20, seed=3):
         assert q[left] == q[right]
+
+
+def tube(folder: Path, half: float, length: float, bent: float) -> str:
+    """A mesh of a bar below the origin, one side `bent` m farther out, as rounding leaves it."""
+    corners = [
+        f"v {x} {y} {z}" for x in (-half, half) for y in (-half, half + bent) for z in (-length, 0)
+    ]
+    faces = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
+    path = folder / f"{half}.obj"
+    path.write_text("\n".join((*corners, *(f"f {face}" for face in faces))))
+    return f'<mesh filename="{path}"/>'
+
+
+@pytest.mark.parametrize("rpy", ["0 0 0", "1.5708 0 0", "-0.2 -0.3 -1.8", "2.2 0.4 -2.7"])
+def test_tubes_that_slide_in_each_other_meet_at_rest(tmp_path: Path, rpy: str) -> None:
+    slide = 'lower="0" upper="0.1" velocity="1" effort="30"'
+    tubes = body_of(
+        link("base_link", box(0.4, 0.3, 0.2)),
+        link("outer", tube(tmp_path, 0.037725, 0.2225, 4e-9)),
+        link("middle", tube(tmp_path, 0.0357, 0.2265, 0.0)),
+        link("inner", tube(tmp_path, 0.033675, 0.2265, 0.0)),
+        joint("mast", "base_link", "outer", "0 0 1", kind="prismatic", limit=slide, rpy=rpy),
+        joint("first", "outer", "middle", kind="prismatic", limit=slide),
+        joint("second", "middle", "inner", "0 0 0.086", kind="prismatic", limit=slide),
+    )
+    assert Contacts(tubes, [("outer", "inner")]).meeting(tubes.configuration({}))[0]
+    assert ("outer", "inner") in sample_matrix(tubes, samples=20).ignored
