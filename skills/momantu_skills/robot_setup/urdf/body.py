@@ -16,7 +16,6 @@ from momantu_skills.manipulation.model.shapes import BodyShapes, LinkShapes
 from momantu_skills.manipulation.model.urdf import UrdfSource, base_urdf
 from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton
 
-
 TOUCH = 1e-6
 """Least distance, m, at which links count as meeting. At 0 coal takes hulls for apart that have one
 middle, such as those of tubes that slide in each other."""
