@@ -94,7 +94,7 @@ def test_overhang_of_another_grid_is_laid_over() -> None:
 
 
 def test_depth_needs_several_pixels_and_floor_clears() -> None:
-    costmap, spot = _costmap(), np.array([[1.02, 0.02]])
+    costmap, spot = _costmap(), np.array([[1.02, 0.02, 0.2]])
     nothing = np.zeros((0, 2))
     costmap.see_depth(spot.repeat(2, axis=0), nothing)
     costmap.refresh()
@@ -102,15 +102,33 @@ def test_depth_needs_several_pixels_and_floor_clears() -> None:
     costmap.see_depth(spot.repeat(5, axis=0), nothing)
     costmap.refresh()
     assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0
-    costmap.see_depth(nothing, spot.repeat(5, axis=0))
+    costmap.see_depth(np.zeros((0, 3)), spot[:, :2].repeat(5, axis=0))
     costmap.refresh()
     assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) > 0.5
+
+
+def test_low_things_are_those_that_the_laser_looks_over_until_their_place_is_bare() -> None:
+    low, tall = np.array([[1.02, 0.02, 0.07]]), np.array([[-1.02, 0.02, 0.5]])
+    costmap, nothing = _costmap(), np.zeros((0, 2))
+    box = np.vstack([tall, tall * (1, 1, 0.1)]).repeat(4, axis=0)
+    costmap.see_depth(np.vstack([low.repeat(5, axis=0), box]), nothing, 0.2)
+    assert costmap.low_things() == pytest.approx(np.array([[1.025, 0.025]]), abs=1e-6)
+    costmap.see_depth(np.zeros((0, 3)), low[:, :2].repeat(5, axis=0), 0.2)
+    assert len(costmap.low_things()) == 0
+
+
+def test_low_things_are_laid_into_another_costmap() -> None:
+    costmap = _costmap()
+    costmap.lay(np.array([[1.02, 0.02], [50.0, 0.0]]))
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0
+    assert len(costmap.low_things()) == 1
 
 
 def test_points_off_the_map_are_left_out() -> None:
     costmap = _costmap()
     before = costmap.field.copy()
-    costmap.see_depth(np.full((9, 2), 50.0), np.full((9, 2), -50.0))
+    costmap.see_depth(np.full((9, 3), 50.0), np.full((9, 2), -50.0))
     costmap.see_laser(Pose2D(3.9, 2.9, 0.0), _rays(0.5, 5.0))
     costmap.refresh(Pose2D(60.0, 0.0, 0.0))
     assert np.array_equal(costmap.field, before)

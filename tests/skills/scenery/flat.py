@@ -140,6 +140,7 @@ class FlatScene:
     def __init__(self, outline: Sequence[tuple[float, float]]) -> None:
         self.outline = np.array(outline)
         self.load: tuple[float, np.ndarray] | None = None
+        self.low_things = np.empty((0, 2))
 
     def footprint(self, state: RobotState, below: float = math.inf) -> np.ndarray:
         if self.load is None or self.load[0] >= below:

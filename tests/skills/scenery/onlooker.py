@@ -32,6 +32,7 @@ class SeenScene:
     def __init__(self, held: HeldObject | None = None, robot: Sequence[Box3] = ()) -> None:
         self.held, self.robot = held, robot
         self.observed = 0
+        self.low_things = np.empty((0, 2))
 
     def observe(self, snapshot: Snapshot) -> None:
         self.observed += 1

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
+import numpy as np
+
 from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.frames import MAP, ODOM, FrameBuffer
@@ -41,6 +43,7 @@ class PlanningSceneService(Service):
         self.holding = Holding(self.config)
         self.payload = Payload(context.description, context.frames)
         self.scene: scene.Scene = _scene(context, self.config)
+        self.low_things: Array = np.empty((0, 2))
 
     @cached_property
     def floor_plan(self) -> site_obstacles.FloorPlan:

@@ -28,7 +28,12 @@ class BodyScene(PlanningScene, Protocol):
     """A planning scene that knows of the heights of the robot's parts and of its surroundings.
 
     Columns are rows of x, y, lowest and highest point, and radius, base frame, m.
+
+    low_things: (n, 2) in the map, m: where pictures showed things below the laser's plane. A camera
+    that looks ahead does not see what lies near the base, so who drives next must be told of it.
     """
+
+    low_things: Array
 
     def overhang(self, state: RobotState) -> Array:
         """Discs (k, 5) that cover what of arm and held object reaches beyond the base.

@@ -41,6 +41,10 @@ COSTLESS = 0.5
 """Clearance from which a cell is drawn as free, m."""
 SHOWN = 3.0
 """Time for which a path and the costmap are shown, s; a base that drives plans more often."""
+LASER_DOUBT = 0.03
+"""How far below its plane a laser may look over a thing, m: noise of heights, tilt of the laser."""
+UNDER = 0.05
+"""Distance beside the base up to which nothing lies where it stands, m: one cell."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -80,6 +84,7 @@ class Vehicle:
         self.config, self.limits = config, description.base
         self.glides = description.base.sideways > 0.0
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
+        self._remembers = shared is not None
         self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
@@ -145,10 +150,22 @@ class Vehicle:
         rays = Rays.from_scan(scan, self._base_from_laser)
         self._hits = rays.points()
         self._body.look(self._robot.state(), self._hits)
+        if not self._remembers:
+            self._remember(pose)
         self.costmap.see_laser(pose, rays)
         if depth and self._look_due(pose):
-            self._see_depth(pose)
+            self._see_depth(pose, float(self._base_from_laser.position[2]))
         self.costmap.refresh(pose)
+
+    def _remember(self, pose: Pose2D) -> None:
+        """Mark the low things that earlier pictures showed; none lies where the base stands."""
+        self._remembers = True
+        there = self._scene.low_things
+        own = pose.inverse().transform().apply(np.column_stack([there, np.zeros(len(there))]))
+        off = np.linalg.norm(own[:, None, :2] - self.base_discs[:, :2], axis=2)
+        under = (off < self.base_discs[:, 2] + UNDER).any(axis=1)
+        self.costmap.lay(there[~under])
+        self.costmap.refresh()
 
     def _follow_footprint(self) -> None:
         state = self._robot.state()
@@ -175,14 +192,17 @@ class Vehicle:
         way = looked.distance_to(pose) / self.config.depth_every
         return way + turned / TURN_BETWEEN_LOOKS > 1.0
 
-    def _see_depth(self, pose: Pose2D) -> None:
+    def _see_depth(self, pose: Pose2D, laser: float) -> None:
+        """Add a depth picture; laser: the height of the laser's plane, m."""
         image = read_camera(self._robot)
         state = self._robot.state()
         obstacles, floor = obstacles_and_floor(
             image, self._frames, self._robot.description, state, self._scene, self.config
         )
-        self.costmap.see_depth(_moved(pose, obstacles), _moved(pose, floor))
+        there = np.column_stack([_moved(pose, obstacles), obstacles[:, 2]])
+        self.costmap.see_depth(there, _moved(pose, floor), laser - LASER_DOUBT)
         self.costmap.looked = pose
+        self._scene.low_things = self.costmap.low_things()
 
     def _gaze_goal(self) -> JointPositions | None:
         """Return where a head looks while driving; None for a camera on the arm or a fixed one."""

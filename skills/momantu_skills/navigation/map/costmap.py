@@ -26,6 +26,8 @@ RANGE_DOUBT = 0.02
 """Heading error of the estimate, rad: hits this far off the map's walls are attributed to it."""
 DEPTH_HITS = 3
 """Depth pixels that a cell needs to be occupied: single ones lie between near and far edges."""
+LOW, TALL = 1, 2
+"""What a cell of the depth layer shows: something the laser looks over, or that it sees too."""
 
 
 class Costmap:
@@ -89,12 +91,27 @@ class Costmap:
             self._config.known_reach,
         )
 
-    def see_depth(self, obstacles: Array, floor: Array) -> None:
-        """Mark cells with obstacle points (n, 2); clear those with floor points (m, 2)."""
+    def see_depth(self, obstacles: Array, floor: Array, laser: float = 0.0) -> None:
+        """Mark cells with obstacle points (n, 3); clear those with floor points (m, 2).
+
+        z of an obstacle's point is its height above the floor. laser: that of the laser's plane, m;
+        what is lower is not seen by it.
+        """
         bare = self._counts(floor) >= DEPTH_HITS
-        taken = self._counts(obstacles) >= DEPTH_HITS
+        taken = self._counts(obstacles[:, :2]) >= DEPTH_HITS
+        tall = self._counts(obstacles[obstacles[:, 2] > laser, :2]) > 0
         self._depth[bare & ~taken] = 0
-        self._depth[taken & (self.known_field > self._config.known_reach)] = 1
+        taken &= self.known_field > self._config.known_reach
+        self._depth[taken] = np.where(tall[taken], TALL, LOW)
+
+    def low_things(self) -> Array:
+        """Middles (n, 2) of the cells in which pictures show something below the laser's plane."""
+        rows, columns = np.nonzero(self._depth == LOW)
+        return np.asarray(self.frame[:2] + (np.column_stack([columns, rows]) + 0.5) * self.frame[2])
+
+    def lay(self, low_things: Array) -> None:
+        """Mark what was seen before below the laser's plane: points (n, 2)."""
+        self._depth[self._counts(low_things) > 0] = LOW
 
     def _counts(self, points: Array) -> NDArray[np.int64]:
         rows, columns = self.grid.cells.shape

@@ -89,10 +89,11 @@ def obstacles_and_floor(
     scene: PlanningScene,
     config: NavigationConfig,
 ) -> tuple[Array, Array]:
-    """Obstacle points (n, 2) and points (m, 2) of free floor, base frame, m.
+    """Obstacle points (n, 3) and points (m, 2) of free floor, base frame, m.
 
-    The base frame's origin lies on the floor, nearly: the floor's tilt is measured in the picture.
-    Points on the robot and its held object are removed.
+    z of an obstacle's point is its height above the floor. The base frame's origin lies on the
+    floor, nearly: the floor's tilt is measured in the picture. Points on the robot and its held
+    object are removed.
     """
     points = _points(image)
     points = frames.lookup(description.base_frame, image.frame, image.stamp).apply(points)
@@ -111,7 +112,8 @@ def obstacles_and_floor(
     own = np.zeros(len(points), dtype=bool)
     if near.any():
         own[near] = scene.is_robot(points[near], state)
-    return points[in_way & ~own, :2], points[bare, :2]
+    met = in_way & ~own
+    return np.column_stack([points[met, :2], heights[met]]), points[bare, :2]
 
 
 def _floor_heights(points: Array, distance: Array, low: float) -> Array | None:
