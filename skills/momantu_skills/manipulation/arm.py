@@ -18,6 +18,7 @@ from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
 from momantu_skills.manipulation.motion.following import CODE, STILL, Watch, follow
 from momantu_skills.manipulation.motion.recoil import recoil, way_ahead, way_back
+from momantu_skills.manipulation.motion.strain import Strain
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.perception.camera.snapshot import take
 
@@ -213,10 +214,13 @@ class Arm:
     ) -> Generator[str, None, bool]:
         """See `motion.follow`. An arm that meets something goes back a little before it fails.
 
-        What it met is an obstacle from now on, until a picture shows that nothing is there.
+        What it met is an obstacle from now on, until a picture shows that nothing is there. Motors
+        are watched where no contact is meant: without `until`.
         """
+        strain = Strain(self.scene.model.efforts) if until is None else None
+        clock = self.skill.clock
         try:
-            return (yield from follow(self.robot, self.skill.clock, ARM, trajectory, phase, until))
+            return (yield from follow(self.robot, clock, ARM, trajectory, phase, until, strain))
         except Failure as failure:
             if failure.code != CODE:
                 raise

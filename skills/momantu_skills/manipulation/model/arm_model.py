@@ -66,6 +66,12 @@ class ArmModel:
         """Where the group's joints (n,) stand among all joints."""
         return np.array([self._index[name] for name in self.group.names])
 
+    @cached_property
+    def efforts(self) -> Array:
+        """The URDF's largest effort of each joint of the group (n,), Nm or N; 0: not given."""
+        places = [self.pin.joints[self.pin.getJointId(name)].idx_v for name in self.group.names]
+        return np.asarray(self.pin.effortLimit[places])
+
     def joints(self, state: RobotState) -> Array:
         """Measured joints of the planning group (n,), clipped to their limits."""
         q = np.array([state.position(name) for name in self.group.names])

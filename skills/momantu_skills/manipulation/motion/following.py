@@ -11,6 +11,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Clock
+from momantu_skills.manipulation.motion.strain import Push, Strain
 
 LAG = 0.35
 """Lag behind the trajectory that is normal at full speed, rad or m: two ticks of delay."""
@@ -41,15 +42,17 @@ def follow(
     trajectory: JointTrajectory,
     phase: str = "moving",
     until: Watch | None = None,
+    strain: Strain | None = None,
 ) -> Generator[str, None, bool]:
     """Command a trajectory tick by tick; True once the arm has arrived and stands still.
 
     until: called at each tick; when it returns True, the actuator brakes along the path and the
-    result is False. Yields the phase. An arm that is late but makes progress on its path is waited
-    for.
+    result is False. strain: tells when a motor pushes against something. Yields the phase. An arm
+    that is late but makes progress on its path is waited for.
 
     Raises:
-        Failure: ARM_STUCK if the joints lag behind or never arrive; the actuator is stopped.
+        Failure: ARM_STUCK if the joints lag behind or never arrive, or push against something; the
+            actuator is stopped.
     """
     began = clock.now()
     delay = _Delay(trajectory)
@@ -64,6 +67,9 @@ def follow(
             return False
         if now - began >= trajectory.duration and still and _arrived(positions, trajectory):
             return True
+        if strain is not None and (push := strain.felt(efforts_of(robot, trajectory.names))):
+            robot.stop(actuator)
+            raise _pushing(trajectory, push, now - began)
         if delay.hopeless(positions, now - began):
             robot.stop(actuator)
             raise _stuck(trajectory, positions, now - began)
@@ -131,6 +137,12 @@ def joints_of(robot: Robot, names: Sequence[str]) -> Array:
     return np.array([state.position(name) for name in names])
 
 
+def efforts_of(robot: Robot, names: Sequence[str]) -> Array:
+    """Measured efforts (n,) of joints, Nm or N."""
+    state = robot.state()
+    return np.array([state.efforts[state.names.index(name)] for name in names])
+
+
 def _arrived(positions: Array, trajectory: JointTrajectory) -> bool:
     return float(np.abs(positions - trajectory.positions[-1]).max()) < ARRIVED
 
@@ -144,4 +156,15 @@ def _stuck(trajectory: JointTrajectory, positions: Array, after: float) -> Failu
         f"be after {after:.1f} s: something holds the arm, or its driver does not answer",
         joint=trajectory.names[worst],
         error=float(error[worst]),
+    )
+
+
+def _pushing(trajectory: JointTrajectory, push: Push, after: float) -> Failure:
+    name = trajectory.names[push.joint]
+    return Failure(
+        CODE,
+        f"{name} gives {push.rise:.0f} Nm (or N) more than a moment before, after {after:.1f} s: "
+        "the arm pushes against something, or something holds it",
+        joint=name,
+        rise=push.rise,
     )
