@@ -135,6 +135,15 @@ def test_points_off_the_map_are_left_out() -> None:
     assert costmap.room(Pose2D(60.0, 0.0, 0.0), DISC) < 0.0
 
 
+def test_what_pictures_showed_is_kept_where_they_show_nothing_now() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    for x in (0.6, 2.0):
+        costmap.see_depth(np.array([[x, 0.02, 0.7]]).repeat(5, axis=0), np.zeros((0, 2)))
+    costmap.clear_ahead(pose, 1.0)
+    assert costmap.room(Pose2D(0.6, 0.0, 0.0), DISC) < 0.0
+    assert costmap.room(Pose2D(2.0, 0.0, 0.0), DISC) > 0.3
+
+
 def test_what_lies_behind_is_remembered() -> None:
     costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
     costmap.see_laser(pose, _rays(0.0, 1.0))

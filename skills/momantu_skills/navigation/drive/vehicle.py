@@ -43,6 +43,8 @@ SHOWN = 3.0
 """Time for which a path and the costmap are shown, s; a base that drives plans more often."""
 LASER_DOUBT = 0.03
 """How far below its plane a laser may look over a thing, m: noise of heights, tilt of the laser."""
+FEW = 0.02
+"""Share of a picture's points that may be nearer than where it begins to show things."""
 UNDER = 0.05
 """Distance beside the base up to which nothing lies where it stands, m: one cell."""
 AT_REST = 0.01
@@ -104,6 +106,7 @@ class Vehicle:
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
         self._hits = np.zeros((0, 2))
+        self.blind = 0.0
         self.blocked_for = 0.0
         self.blocked_total = 0.0
 
@@ -202,6 +205,8 @@ class Vehicle:
         there = np.column_stack([_moved(pose, obstacles), obstacles[:, 2]])
         self.costmap.see_depth(there, _moved(pose, floor), laser - LASER_DOUBT)
         self.costmap.looked = pose
+        shown = np.hypot(*np.vstack([obstacles[:, :2], floor]).T)
+        self.blind = float(np.quantile(shown, FEW)) if len(shown) else self.blind
         self._scene.low_things = self.costmap.low_things()
 
     def _gaze_goal(self) -> JointPositions | None:

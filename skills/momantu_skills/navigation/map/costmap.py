@@ -66,14 +66,18 @@ class Costmap:
         off_y = self.frame[1] + (rows + 0.5) * self.frame[2] - y
         return np.asarray((np.abs(off_x) <= edge / 2) & (np.abs(off_y) <= edge / 2))
 
-    def clear_ahead(self, map_from_base: Pose2D) -> None:
-        """Clear what was seen ahead of the base, which can be seen again; keep what lies behind."""
+    def clear_ahead(self, map_from_base: Pose2D, blind: float = 0.0) -> None:
+        """Clear what was seen ahead of the base, which can be seen again; keep what lies behind.
+
+        blind: distance from the base up to which no picture shows anything, m: what pictures showed
+        there before is kept too.
+        """
         rows, columns = np.mgrid[0 : self.grid.cells.shape[0], 0 : self.grid.cells.shape[1]]
         x = self.frame[0] + (columns + 0.5) * self.frame[2] - map_from_base.x
         y = self.frame[1] + (rows + 0.5) * self.frame[2] - map_from_base.y
         ahead = math.cos(map_from_base.yaw) * x + math.sin(map_from_base.yaw) * y > 0.0
         self._laser[ahead] = 0
-        self._depth[ahead] = 0
+        self._depth[ahead & (np.hypot(x, y) > blind)] = 0
         self.refresh()
 
     def see_laser(self, map_from_base: Pose2D, rays: Rays) -> None:
