@@ -27,6 +27,8 @@ class Obedient:
     stuck: it is commanded but stands. arm: how far an arm reaches ahead of the outline, m.
     """
 
+    blind = 0.0
+
     def __init__(
         self, start: Pose2D, boxes: Boxes = (), arm: float = 0.0, limits: BaseLimits = LIMITS
     ) -> None:
