@@ -11,12 +11,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from momantu_worlds.checking.access import places, start, surfaces
+from momantu_worlds.checking.goals import RIM_LEAST
 from momantu_worlds.checking.legible import light_on
 from momantu_worlds.checking.measures import Measures
 from momantu_worlds.checking.overlaps import TOUCHING, overlaps
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.upright import TIPPING, upright
+from momantu_worlds.scenes.catalogue.objects import Thing
 from momantu_worlds.scenes.geometry.bodies import (
     Body,
     Box,
@@ -159,6 +161,16 @@ def test_a_hand_takes_an_item_across_its_narrow_side(yaw: float, long: float, wi
         assert bool(found) == (narrow > ROBOT.max_width)
     for remark in found:
         assert narrow - 1e-9 <= remark.amount <= narrow + 0.02 * max(long, wide)
+
+
+@given(st.floats(0.11, 0.18), st.floats(0.03, 0.08))
+@settings(max_examples=10)
+def test_a_hand_takes_a_bowl_by_its_rim_if_it_is_high_enough(wide: float, high: float) -> None:
+    bowl = Thing("bowl", (wide, wide, high), 0.3, (0.5, 0.5, 0.5))
+    pose = Transform((-2.0, 1.75, HEIGHT))
+    item = Body("can", "bowl", pose, bowl.parts(), static=False, mass=0.3)
+    if abs(high - RIM_LEAST) > 1e-3:
+        assert bool(remarks(changed(item), "item-too-wide")) == (high < RIM_LEAST)
 
 
 @given(st.floats(-40, 40), st.floats(-40, 40), st.sampled_from([0, 1, 2, 3]))

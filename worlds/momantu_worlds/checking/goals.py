@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,9 @@ from momantu_worlds.scenes.geometry.support import SupportTop
 
 SPARSE = 3
 """Every third reachable cell is tested: cells are 2 cm apart."""
+RIM_LEAST = 0.045
+"""Height from which a hollow thing can be held by its rim, m: fingers that reach 2 cm below the rim
+stay 2.5 cm above what it stands on."""
 STEP = 0.05
 """Grid step of the item positions that are tested, m."""
 
@@ -80,7 +83,7 @@ def _item(scenario: Scenario, item: Body) -> Iterator[FindingAtKeys]:
     points = np.concatenate([solid.vertices for solid in scenario.solids[item.name]])
     place, robot = scenario.place(item.name), scenario.robot
     width = _width(points[:, :2])
-    if width > robot.max_width:
+    if width > robot.max_width and not _has_rim(scenario.solids[item.name], points):
         yield FindingAtKeys(
             Severity.ERROR,
             "item-too-wide",
@@ -103,6 +106,18 @@ def _item(scenario: Scenario, item: Body) -> Iterator[FindingAtKeys]:
             about=(item.name,),
             amount=far,
         )
+
+
+def _has_rim(solids: Sequence[Convex], points: Array) -> bool:
+    """Whether a hand can hold it by its rim: it is hollow, open above and high enough.
+
+    points: (n, 3) all vertices of its solids.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle = (low + high) / 2
+    middle[2] = (low[2] + 3 * high[2]) / 4
+    solid = any((s.normals @ middle <= s.offsets).all() for s in solids)
+    return bool(high[2] - low[2] >= RIM_LEAST and not solid)
 
 
 def _width(points: Array) -> float:
