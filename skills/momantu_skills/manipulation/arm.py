@@ -18,7 +18,7 @@ from momantu_bt.skill import Skill
 from momantu_skills.manipulation.config import HandConfig, PlanningConfig
 from momantu_skills.manipulation.motion.following import CODE, STILL, Watch, follow
 from momantu_skills.manipulation.motion.recoil import recoil, way_ahead, way_back
-from momantu_skills.manipulation.motion.strain import Strain
+from momantu_skills.manipulation.motion.strain import Strain, slow
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.perception.camera.snapshot import take
 
@@ -206,18 +206,19 @@ class Arm:
         self, path: Array, tip_speed: float | None = None, *, careful: bool = False
     ) -> JointTrajectory:
         """The fastest trajectory along a path; see `timed`. careful: something may stand there."""
-        slow = self.planning.careful_speed if careful else None
-        return timing.timed(self.group, path, self.planning, tip_speed, joint_speed=slow)
+        most = self.planning.careful_speed if careful else None
+        return timing.timed(self.group, path, self.planning, tip_speed, joint_speed=most)
 
     def follow(
         self, trajectory: JointTrajectory, phase: str, until: Watch | None = None
     ) -> Generator[str, None, bool]:
         """See `motion.follow`. An arm that meets something goes back a little before it fails.
 
-        What it met is an obstacle from now on, until a picture shows that nothing is there. Motors
-        are watched where no contact is meant: without `until`.
+        What it met is an obstacle from now on, until a picture shows that nothing is there. Slow
+        motions watch the motors too, unless a contact is meant (`until`).
         """
-        strain = Strain(self.scene.model.efforts) if until is None else None
+        feels = until is None and slow(trajectory)
+        strain = Strain(self.scene.model.efforts) if feels else None
         clock = self.skill.clock
         try:
             return (yield from follow(self.robot, clock, ARM, trajectory, phase, until, strain))
@@ -225,8 +226,8 @@ class Arm:
             if failure.code != CODE:
                 raise
             state, here = self.state, self.joints
-            slow = partial(self.trajectory, careful=True)
-            if (yield from recoil(self.robot, self.skill.clock, ARM, trajectory, slow)):
+            timed = partial(self.trajectory, careful=True)
+            if (yield from recoil(self.robot, self.skill.clock, ARM, trajectory, timed)):
                 passed = way_back(trajectory, here)
                 self.scene.met(state, passed, way_ahead(trajectory, here))
             raise
@@ -346,9 +347,9 @@ class Arm:
         """One trajectory that rounds corners where possible, or one per straight segment."""
         if len(path) == 2:
             return [self.trajectory(path, careful=careful)]
-        slow = self.planning.careful_speed if careful else None
+        most = self.planning.careful_speed if careful else None
         for radius in self.planning.rounding:
-            whole = timing.timed(self.group, path, self.planning, rounding=radius, joint_speed=slow)
+            whole = timing.timed(self.group, path, self.planning, rounding=radius, joint_speed=most)
             if world.path_free(whole.positions):
                 return [whole]
         return [self.trajectory(path[i : i + 2], careful=careful) for i in range(len(path) - 1)]

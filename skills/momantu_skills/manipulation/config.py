@@ -90,7 +90,8 @@ class PlanningConfig:
     in turn: the first covers errors of map and localization. None: it is no taller than seen."""
     careful_speed: float = 0.1
     """Fastest joint where something may stand that no sensor has seen, rad/s or m/s: a straight arm
-    that swings at a hard wall with it pushes with 60 N, and with 150 N at four times as fast."""
+    that swings at a hard wall with it pushes with 54 N before its motors feel it, and with 174 N at
+    four times as fast (`benchmarks/contact_force.py`)."""
     sample: float = 0.04
     """Time between points of a timed trajectory, s."""
     tilt: float = 1.05

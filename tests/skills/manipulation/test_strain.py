@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from momantu_skills.manipulation.config import PlanningConfig
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.motion.following import follow
-from momantu_skills.manipulation.motion.strain import LASTING, LEAST, SHARE, Push, Strain
+from momantu_skills.manipulation.motion.strain import LASTING, LEAST, SHARE, Push, Strain, slow
+from momantu_skills.manipulation.motion.timing import timed
 
 from momantu_bt.failure import Failure
 from tests.skills.manipulation.test_motion import run, swing
@@ -26,7 +28,7 @@ def felt(rows: np.ndarray, limits: np.ndarray = LIMITS) -> list[Push]:
     return [push for row in rows if (push := strain.felt(row)) is not None]
 
 
-@given(st.floats(-90.0, 90.0), st.floats(-4.0, 4.0), st.integers(0, 1000))
+@given(st.floats(-90.0, 90.0), st.floats(-1.0, 1.0), st.integers(0, 1000))
 def test_weight_that_changes_slowly_is_no_push(start: float, step: float, seed: int) -> None:
     noise = np.random.default_rng(seed).normal(0.0, 1.0, (60, 4))
     assert not felt(start + step * np.arange(60)[:, None] + noise)
@@ -67,6 +69,13 @@ def test_a_weak_joint_tells_only_what_is_more_than_friction() -> None:
     rows = np.zeros((30, 4))
     rows[15:, 0] = LEAST - 1.0
     assert not felt(rows, np.array([8.0, 60.0, 60.0, 60.0]))
+
+
+def test_only_slow_motions_tell(swing: Any, model: ArmModel) -> None:
+    _, trajectory = swing
+    assert not slow(trajectory)
+    path = trajectory.positions[[0, -1]]
+    assert slow(timed(model.group, path, PlanningConfig(), joint_speed=0.1))
 
 
 def test_an_arm_that_pushes_stops_before_it_lags(swing: Any, model: ArmModel) -> None:

@@ -1,7 +1,9 @@
 """Feeling in the motors' efforts that an arm pushes against something.
 
 A motor that is stopped gives more and more, up to its limit, long before the arm lags behind much.
-What it gives for weight and acceleration changes slowly or is small; what counts is a rise.
+Where the arm goes slowly, because something may stand there, what it gives for weight changes
+slowly and what it gives for acceleration is small; what counts is a rise. In fast motions light
+joints rise by more than half of their limits with nothing in their way: there this tells nothing.
 """
 
 from __future__ import annotations
@@ -12,17 +14,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array
+from momantu_bt.messages import JointTrajectory
 
-SHARE = 0.5
-"""Rise of an effort that counts, as a share of the joint's limit: twice the largest of shoulder and
-elbow joints in free motion."""
+SLOW = 0.15
+"""Speed up to which a motion is slow, rad/s or m/s."""
+SHARE = 0.3
+"""Rise of an effort that counts, as a share of the joint's limit."""
 RECENT = 10
 """Ticks whose median a rise is measured from: 0.5 s, in which weight and load hardly change."""
 LASTING = 2
 """Ticks for which a rise must last: a start or stop jerks for one."""
-LEAST = 15.0
-"""Least rise that counts, Nm or N: ten times a motor's friction and noise. So wrist joints, which
-move only the hand, seldom tell."""
+LEAST = 10.0
+"""Least rise that counts, Nm or N: several times a motor's friction and noise. So wrist joints,
+which move only the hand, seldom tell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +35,12 @@ class Push:
 
     joint: int
     rise: float
+
+
+def slow(trajectory: JointTrajectory) -> bool:
+    """Whether an arm that follows the trajectory goes slowly enough to feel what it meets."""
+    steps = np.abs(np.diff(trajectory.positions, axis=0)) / np.diff(trajectory.times)[:, None]
+    return bool(steps.max(initial=0.0) <= SLOW)
 
 
 class Strain:
