@@ -102,6 +102,14 @@ def test_a_point_is_hidden_behind_what_stands_before_it_or_beside_the_picture(
         assert bool(hidden[0]) is (stands < x - 0.05)
 
 
+def test_a_point_is_hidden_where_nothing_was_measured() -> None:
+    image = picture()
+    image.depth[:] = 0.0
+    taken = SeenSpace()
+    taken.add(image, AHEAD, NEAREST)
+    assert taken.hidden(np.array([(1.0, 0.0, 0.8)]), 0.05).all()
+
+
 def test_a_way_in_sight_is_no_blind_spot() -> None:
     assert blind_spot(arm(looks(AHEAD), known=0.0), way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))) is None
 

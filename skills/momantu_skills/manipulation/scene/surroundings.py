@@ -292,13 +292,16 @@ class _View:
         return passed
 
     def hides(self, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Which points (n, 3) lie `slack` m behind what the picture shows, or beside it: (n,)."""
+        """Which points (n, 3) lie `slack` m behind what the picture shows, or beside it: (n,).
+
+        Where it measured nothing, as on an arm that is too near, it shows nothing.
+        """
         z, u, v = self._pixels(points)
         hidden = ~self._inside(z, u, v)
         inside = np.flatnonzero(~hidden)
         rows, columns = (v[inside] / STRIDE).astype(np.int64), (u[inside] / STRIDE).astype(np.int64)
         depth = self.depth[rows, columns]
-        hidden[inside] = (depth > 0.0) & (depth < z[inside] - slack)
+        hidden[inside] = depth < z[inside] - slack
         return hidden
 
     def _pixels(self, points: Array) -> tuple[Array, Array, Array]:
