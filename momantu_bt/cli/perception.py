@@ -9,7 +9,9 @@ from momantu_bt.errors import ExitCode
 perception = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
 
 
-@perception.callback(help="Render labelled pictures, and measure detectors on them.")
+@perception.callback(
+    help="Render labelled pictures, train the learned detector, measure detectors."
+)
 def every(context: typer.Context) -> None:
     """Print the help, unless a command is named."""
     if context.invoked_subcommand is None:

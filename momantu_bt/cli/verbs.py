@@ -64,7 +64,7 @@ VERBS = {
     ),
     "perception": Verb(
         "momantu_bt.cli.perception",
-        "Render labelled pictures, and measure detectors on them.",
+        "Render labelled pictures, train the learned detector, measure detectors.",
     ),
     "faults": Verb(
         "momantu_bt.cli.faults", "List what can be broken on purpose, or show one fault."

@@ -24,7 +24,7 @@ EVERY = 50
 
 
 def evaluate(
-    detector: Annotated[str, typer.Option(help="An installed detector.")] = "geometric",
+    detector: Annotated[str, typer.Option(help="An installed detector.")] = "learned",
     seeds: Annotated[str, typer.Option(help="One picture for each: 0:200 is 0 to 199.")] = "0:200",
     output: Annotated[
         Path | None, typer.Option("--json", help="Write the figures to this file.")

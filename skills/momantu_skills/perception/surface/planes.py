@@ -166,16 +166,23 @@ def _one_patch(points: Array, inliers: Mask, config: PlaneConfig) -> tuple[Mask,
     return kept, seen * config.cell**2
 
 
-def _levelled(view: View, plane: Plane) -> tuple[Array, float]:
-    """The view's points rotated about its camera so that the plane is level, and its height."""
-    middle = np.array([*plane.centre, plane.height])
+def levelling(plane: Plane) -> Transform | None:
+    """The turn about the camera that levels a plane; None if it is level, or its tilt unknown."""
     if not plane.tilt_known:
-        return view.points, plane.height
+        return None
     normal = np.array([-plane.slope[0], -plane.slope[1], 1.0])
     axis = np.cross(normal, [0.0, 0.0, 1.0])
     sine = float(np.linalg.norm(axis)) / float(np.linalg.norm(normal))
     if sine < 1e-9:
+        return None
+    return Transform(quaternion=quaternion_from_axis_angle(axis, math.asin(sine)))
+
+
+def _levelled(view: View, plane: Plane) -> tuple[Array, float]:
+    """The view's points rotated about its camera so that the plane is level, and its height."""
+    turn = levelling(plane)
+    if turn is None:
         return view.points, plane.height
-    turn = Transform(quaternion=quaternion_from_axis_angle(axis, math.asin(sine)))
+    middle = np.array([*plane.centre, plane.height])
     moved = turn.apply(view.points - view.camera) + view.camera
     return moved, float((turn.apply(middle - view.camera) + view.camera)[2])

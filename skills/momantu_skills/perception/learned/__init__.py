@@ -1,0 +1,1 @@
+"""The learned detector: what each pixel shows, by a network, then poses and sizes from depth."""

@@ -1,0 +1,45 @@
+"""The loss of a batch: classes, coordinates up to symmetry, offsets."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+
+COORDINATE_WEIGHT, OFFSET_WEIGHT = 12.0, 3.0
+"""Weights beside that of the classes, at which all three fall alike."""
+BEND, BEND_OFFSET = 0.03, 0.05
+"""Errors up to which the losses are square: of coordinates, and of offsets in units of 0.1 m."""
+CLASS_WEIGHTS = (0.4, 1.0, 1.0, 1.0, 1.0, 1.0, 1.5)
+"""Of the classes; most cells show nothing."""
+
+
+def loss(
+    scores: Tensor, coordinates: Tensor, offsets: Tensor, truth: tuple[Tensor, ...]
+) -> tuple[Tensor, Tensor, Tensor]:
+    """Losses of classes, coordinates and offsets; their weighted sum is to be small.
+
+    truth: classes, things, coordinates (n, VALID, 3, h, w) and offsets, as `examples.batch`. Of
+    equally good coordinates those count, for each thing as a whole, that are nearest.
+    """
+    classes, things, valid, true_offsets = truth
+    weights = torch.tensor(CLASS_WEIGHTS)
+    of_classes = nn.functional.cross_entropy(scores, classes, weights, ignore_index=-1)
+    n, y, x = torch.nonzero(things >= 0, as_tuple=True)
+    if not len(n):
+        return of_classes, coordinates.sum() * 0.0, offsets.sum() * 0.0
+    said, told = coordinates[n, :, y, x], valid[n, :, :, y, x]
+    apart = nn.functional.smooth_l1_loss(
+        said[:, None].expand_as(told), told, reduction="none", beta=BEND
+    ).sum(dim=2)
+    which = n * (int(things.max()) + 1) + things[n, y, x]
+    _, which = torch.unique(which, return_inverse=True)
+    count = int(which.max()) + 1
+    sums = torch.zeros(count, apart.shape[1]).index_add_(0, which, apart)
+    cells = torch.zeros(count).index_add_(0, which, torch.ones(len(which)))
+    # a thing counts by the root of its cells: neither do large ones rule, nor slivers
+    share = cells.sqrt() / cells.sqrt().sum()
+    of_coordinates = (sums.min(dim=1).values / cells * share).sum()
+    of_offsets = nn.functional.smooth_l1_loss(
+        offsets[n, :, y, x], true_offsets[n, :, y, x], beta=BEND_OFFSET
+    )
+    return of_classes, of_coordinates, of_offsets

@@ -1,0 +1,71 @@
+"""What the network sees in one picture: things with poses and sizes in a crop's frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from momantu_bt.geometry import Array
+from momantu_bt.world import seeded
+from momantu_skills.perception.learned import weights
+from momantu_skills.perception.learned.crops import Crop, channels
+from momantu_skills.perception.learned.instances import LEAST, instances
+from momantu_skills.perception.learned.network import CLASSES
+from momantu_skills.perception.learned.solids import Solid, solid
+from momantu_skills.perception.learned.targets import NUMBERS, OFFSET_UNIT
+
+SHOWN = 0.5
+"""Least probability that a cell shows a thing."""
+
+
+class Seeing:
+    """The network with its weights."""
+
+    def __init__(self, path: Path) -> None:
+        """path: of the weights; raises WeightsError if they are none."""
+        self._network = weights.load(path)
+
+    def solids(self, crop: Crop) -> list[Solid]:
+        """The things in a crop, in its frame `level`."""
+        chances, coordinates, offsets = self._said(crop)
+        points = crop.points[::2, ::2].reshape(-1, 3).astype(np.float64)
+        shown = (chances[:, 0] < 1.0 - SHOWN) & np.isfinite(points[:, 2])
+        if int(shown.sum()) < LEAST:
+            return []
+        points, coordinates, offsets = points[shown], coordinates[shown], offsets[shown]
+        chances = chances[shown]
+        owner = instances(points + OFFSET_UNIT * offsets)
+        of_category = np.stack([chances[:, CLASSES.index(name)] for name in NUMBERS], axis=1)
+        handle = chances[:, CLASSES.index("handle")]
+        of_category[:, NUMBERS.index("mug")] += handle
+        of_handle = handle > chances[:, CLASSES.index("mug")]
+        found = []
+        for number in range(int(owner.max()) + 1):
+            mine = owner == number
+            random = seeded("similarity", number, int(mine.sum()))
+            thing = solid(
+                points[mine], coordinates[mine], of_category[mine], of_handle[mine], random
+            )
+            if thing is not None:
+                found.append(thing)
+        return found
+
+    def _said(self, crop: Crop) -> tuple[Array, Array, Array]:
+        """Chances (n, classes), coordinates (n, 3), offsets (n, 3) of all cells."""
+        before = torch.get_num_threads()
+        torch.set_num_threads(1)
+        try:
+            with torch.inference_mode():
+                seen = torch.from_numpy(channels(crop))[None]
+                seen = seen.contiguous(memory_format=torch.channels_last)
+                scores, coordinates, offsets = self._network(seen)
+                parts = (scores.softmax(dim=1), coordinates, offsets)
+                chances, places, votes = (
+                    part[0].permute(1, 2, 0).reshape(-1, part.shape[1]).double().numpy()
+                    for part in parts
+                )
+        finally:
+            torch.set_num_threads(before)
+        return chances, places, votes

@@ -1,0 +1,107 @@
+"""Pose and size of a thing, from where its cells are and where they are said to be on it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.geometry import Array, Transform
+from momantu_skills.perception.learned.similarity import fit
+from momantu_skills.perception.learned.targets import NUMBERS
+
+TOLERANCE = 0.012
+"""Distance between a cell and where the fit has it up to which they agree, m."""
+DIAGONALS = (0.05, 0.45)
+"""Range of the diagonals of things' boxes, m."""
+EXTREME = 96.0
+"""Percentile of the cells' coordinates at a thing's end."""
+STRAIGHT = math.radians(12.0)
+"""Tilt up to which an axis is taken for upright, or for level: things rest on level surfaces."""
+LEVEL = ("can",)
+"""Round things whose axis is level when they lie."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solid:
+    """A thing. frame_from_object: z is its axis, the origin the middle of its box.
+
+    size: (3,) m, without a handle. cells: their number. sure: mean probability of its category.
+    handle: whether a mug's is seen, towards +x.
+    """
+
+    category: str
+    frame_from_object: Transform
+    size: tuple[float, float, float]
+    cells: int
+    sure: float
+    handle: bool
+
+    def moved(self, target_from_frame: Transform) -> Solid:
+        """The same in another frame that is level too."""
+        return replace(self, frame_from_object=target_from_frame @ self.frame_from_object)
+
+
+def solid(
+    points: Array,
+    coordinates: Array,
+    chances: Array,
+    of_handle: NDArray[np.bool_],
+    random: np.random.Generator,
+) -> Solid | None:
+    """The thing of some cells; None if no pose explains them.
+
+    points: (n, 3) in a level frame, m. coordinates: (n, 3) normalized. chances: (n, 5) of each
+    category of NUMBERS. of_handle: (n,) which show a handle.
+    """
+    mean = chances.mean(axis=0)
+    category = NUMBERS[int(mean.argmax())]
+    found = fit(coordinates, points, TOLERANCE, DIAGONALS, random)
+    if found is None:
+        return None
+    body = coordinates[found.fitting & ~of_handle]
+    if len(body) < 6:
+        return None
+    share = _extent(body, category)
+    size = found.scale * share
+    turn = _straightened(found.rotation, category)
+    # the middle of all that agrees stays where it is
+    middle = coordinates[found.fitting].mean(axis=0) * found.scale
+    shift = points[found.fitting].mean(axis=0) - turn @ middle
+    x, y, z = size.tolist()
+    handle = category == "mug" and int(of_handle.sum()) >= 4
+    pose = Transform.from_rotation(turn, shift)
+    return Solid(category, pose, (x, y, z), len(points), float(mean.max()), handle)
+
+
+def _extent(body: Array, category: str) -> Array:
+    """Extent (3,) of a thing over the diagonal of its box, from coordinates (n, 3) on it."""
+    if category == "box":
+        half = np.percentile(np.abs(body), EXTREME, axis=0)
+    else:
+        wide = float(np.percentile(np.hypot(body[:, 0], body[:, 1]), EXTREME))
+        half = np.array([wide, wide, float(np.percentile(np.abs(body[:, 2]), EXTREME))])
+    return np.asarray(half / max(float(np.linalg.norm(half)), 1e-9))
+
+
+def _straightened(rotation: Array, category: str) -> Array:
+    """The rotation with its most upright axis made upright, or a lying can's axis made level."""
+    axes = (0, 1, 2) if category == "box" else (2,)
+    best = max(axes, key=lambda axis: abs(rotation[2, axis]))
+    axis = rotation[:, best]
+    tilt = math.acos(min(1.0, abs(float(axis[2]))))
+    if tilt < STRAIGHT:
+        return _turned(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
+    if category in LEVEL and tilt > math.pi / 2 - STRAIGHT:
+        flat = np.array([axis[0], axis[1], 0.0])
+        return _turned(axis, flat / np.linalg.norm(flat)) @ rotation
+    return rotation
+
+
+def _turned(start: Array, end: Array) -> Array:
+    """The smallest rotation (3, 3) from one unit vector to another that is not opposite."""
+    axis, cosine = np.cross(start, end), float(start @ end)
+    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + cosine))

@@ -1,0 +1,201 @@
+"""The network: weights files, training that goes on, the detector with any weights."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import safetensors.torch
+import torch
+from momantu_skills.perception.learned import examples, training, weights
+from momantu_skills.perception.learned.crops import STEP, channels
+from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
+from momantu_skills.perception.learned.network import Network
+from momantu_skills.perception.learned.weights import WeightsError
+from momantu_worlds.labelled.studio import Studio
+
+from momantu_bt import labelled
+from momantu_bt.cli import main
+from momantu_bt.detector import DETECTORS, known_categories
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with four pictures."""
+    folder = tmp_path_factory.mktemp("pictures")
+    studio = Studio(["four_rooms"], testing=False)
+    for seed in range(4):
+        labelled.write(folder, studio.picture(seed))
+    return folder
+
+
+@pytest.fixture
+def any_weights(tmp_path: Path) -> Path:
+    """Weights of a network that has learned nothing."""
+    torch.manual_seed(0)
+    path = tmp_path / "any.safetensors"
+    weights.save(path, Network(), {"about": "random"})
+    return path
+
+
+def test_weights_come_back_with_their_card(any_weights: Path) -> None:
+    torch.manual_seed(0)
+    fresh = Network().state_dict()
+    back = weights.load(any_weights).state_dict()
+    assert all(torch.allclose(back[name], fresh[name], atol=1e-2) for name in fresh)
+    assert weights.card(any_weights) == {"about": "random"}
+    assert any_weights.stat().st_size < 20e6
+
+
+def spoil(path: Path, how: str) -> None:
+    if how == "missing":
+        path.unlink()
+    elif how == "text":
+        path.write_text("no weights")
+    elif how == "cut":
+        path.write_bytes(path.read_bytes()[:5000])
+    elif how == "foreign":
+        safetensors.torch.save_file({"a": torch.zeros(3)}, path)
+    elif how == "other network":
+        found = safetensors.torch.load_file(path)
+        found.pop("head.bias")
+        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+    else:
+        found = safetensors.torch.load_file(path)
+        found["head.bias"][0] = float("nan")
+        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ("missing", "cannot be read"),
+        ("text", "cannot be read"),
+        ("cut", "cannot be read"),
+        ("foreign", "holds no weights of the learned detector"),
+        ("other network", "another network: 'head.bias'"),
+        ("nan", "not finite"),
+    ],
+)
+def test_a_wrong_weights_file_is_told(how: str, said: str, any_weights: Path) -> None:
+    spoil(any_weights, how)
+    with pytest.raises(WeightsError, match=said):
+        weights.load(any_weights)
+
+
+def test_evaluate_tells_a_wrong_weights_file(
+    pictures: Path,
+    any_weights: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    spoil(any_weights, "text")
+    monkeypatch.setenv(WEIGHTS, str(any_weights))
+    command = ["perception", "evaluate", "--detector", "learned", "--seeds", "0:1"]
+    assert main([*command, "--pictures", str(pictures)]) == 2
+    assert str(any_weights) in capsys.readouterr().err
+
+
+def test_any_weights_give_figures(
+    pictures: Path, any_weights: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(WEIGHTS, str(any_weights))
+    command = ["perception", "evaluate", "--detector", "learned", "--seeds", "0:2"]
+    assert main([*command, "--pictures", str(pictures)]) == 0
+
+
+def test_the_detector_is_a_plug_in_that_knows_its_categories() -> None:
+    assert DETECTORS.load("learned") is LearnedDetector
+    assert set(LearnedDetector.categories) <= set(known_categories() or ())
+
+
+def test_torch_is_imported_with_the_first_picture_alone() -> None:
+    program = (
+        "import sys; from momantu_bt.detector import DETECTORS, known_categories; "
+        "known_categories(); DETECTORS.load('learned')(); DETECTORS.load('geometric')(); "
+        "sys.exit('torch' in sys.modules or 'safetensors' in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True)
+    assert importlib.util.find_spec("torch") is not None
+
+
+def test_crops_fit_the_network(pictures: Path) -> None:
+    for seed in range(4):
+        example = examples.example(labelled.read(pictures, seed))
+        assert example is not None
+        seen, made = example.arrays()
+        assert seen.shape[1] % STEP == seen.shape[2] % STEP == 0
+        assert made.classes.shape == (seen.shape[1] // 2, seen.shape[2] // 2)
+        assert np.isfinite(seen).all()
+        assert np.array_equal(seen, channels(example.crop))
+        shown = np.unique(made.things[made.things >= 0])
+        assert len(shown) >= 1
+
+
+def test_kept_crops_are_the_same(pictures: Path) -> None:
+    fresh = examples.kept(pictures, 0)
+    again = examples.kept(pictures, 0)
+    assert fresh is not None
+    assert again is not None
+    (one, first), (other, second) = fresh.arrays(), again.arrays()
+    assert np.array_equal(one, other)
+    assert np.allclose(first.coordinates, second.coordinates, atol=1e-6)
+    damaged = pictures / examples.FOLDER / "000000.npz"
+    damaged.write_bytes(damaged.read_bytes()[:1000])
+    assert examples.kept(pictures, 0) is not None
+
+
+def trained(pictures: Path, plan: training.Plan, state: Path) -> training.Training:
+    made = training.begin(pictures, plan, "cpu")
+    if state.exists():
+        training.resume(made, state)
+    training.go_on(made, state, lambda line: None)
+    return made
+
+
+def test_an_interrupted_training_ends_as_a_whole_one(pictures: Path, tmp_path: Path) -> None:
+    plan = training.Plan(epochs=2, batch=2, rate=1e-3, seed=3)
+    whole = trained(pictures, plan, tmp_path / "whole.state")
+    part = training.begin(pictures, plan, "cpu")
+    batches = training._batches(part)
+    training._step(part, next(batches))
+    training.keep(part, tmp_path / "part.state")
+    rest = trained(pictures, plan, tmp_path / "part.state")
+    assert rest.step == whole.step == 4
+    for name, value in whole.network.state_dict().items():
+        assert torch.allclose(value, rest.network.state_dict()[name], atol=1e-5), name
+
+
+def test_train_writes_weights_that_can_be_used(pictures: Path, tmp_path: Path) -> None:
+    out = tmp_path / "mine.safetensors"
+    command = ["perception", "train", str(pictures), "-o", str(out), "--epochs", "1"]
+    assert main([*command, "--batch", "2"]) == 0
+    assert weights.card(out)["pictures"] == 4
+    weights.load(out)
+
+
+def test_a_training_that_cannot_begin_is_told(
+    pictures: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "mine.safetensors"
+    assert main(["perception", "train", str(tmp_path), "-o", str(out)]) == 2
+    assert "perception render" in capsys.readouterr().err
+    command = ["perception", "train", str(pictures), "-o", str(out)]
+    if not torch.cuda.is_available():
+        assert main([*command, "--device", "cuda"]) == 2
+        assert "no GPU can be used" in capsys.readouterr().err
+    assert main([*command, "--device", "tpu"]) == 2
+    assert "expected cpu or cuda" in capsys.readouterr().err
+    (tmp_path / "mine.safetensors.state").write_text("no state")
+    assert main(command) == 2
+    assert "cannot be read" in capsys.readouterr().err
+    training.keep(
+        training.begin(pictures, training.Plan(epochs=9), "cpu"),
+        tmp_path / "mine.safetensors.state",
+    )
+    assert main(command) == 2
+    assert "belongs to a training with 4 pictures" in capsys.readouterr().err
