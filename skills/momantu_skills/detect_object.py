@@ -7,6 +7,7 @@ from functools import partial
 
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.detector import DETECTORS, ObjectDetector, View
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
@@ -21,7 +22,7 @@ with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
-    from momantu_skills.perception.objects import matching
+    from momantu_skills.perception.objects import config, matching
 
 
 LOOKS = 3
@@ -41,8 +42,10 @@ class DetectObject(Skill):
     object: ObjectClass = In(doc="what to find: its category and the sizes that are known")
     on: str = In(names="surface", doc="the surface that it stands on")
     views: int = In(2, least=1, most=20, doc="number of views that must show the object")
-    detector: str = In(
-        "geometric", names=DETECTORS.name, doc="the detector that finds it in the pictures"
+    detector: str | None = In(
+        None,
+        names=DETECTORS.name,
+        doc="the detector that finds it in the pictures; None: the one that the site chooses",
     )
     found: DetectedObject = Out(doc="the best match; pose in odom, stamped")
     also_called = ("find_object", "find", "detect", "search", "look_for", "recognize")
@@ -71,7 +74,7 @@ class DetectObject(Skill):
         region = regions.surface_region(corners)
         pending = surveys.looks_over(self, robot, corners, LOOKS)
         snapshots: list[Snapshot] = []
-        finder = DETECTORS.load(self.detector)()
+        finder = self._finder()
         result: tuple[DetectedObject, ...] | None = None
         best: DetectedObject | None = None
         while pending:
@@ -99,6 +102,12 @@ class DetectObject(Skill):
         if failure is None:
             return ObjectAt(self.object, self.found.pose.transform, EXACT)
         return ObjectOn(self.object, self.on) if failure.code == "OBJECT_NOT_FOUND" else None
+
+    def _finder(self) -> ObjectDetector:
+        """The detector that the tree names, or else the site."""
+        parameters = self.site.services.get("detect_object", {})
+        usual = configured(config.DetectionConfig, parameters, "detect_object").detector
+        return DETECTORS.load(self.detector or usual)()
 
     def _measure(
         self,

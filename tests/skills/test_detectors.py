@@ -6,15 +6,18 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import numpy as np
 import pytest
 from momantu_skills.detect_object import DetectObject
+from momantu_skills.perception.objects.config import DetectionConfig
 from momantu_skills.perception.objects.geometric import GeometricDetector
 
 from momantu_bt import plugins
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.detector import DETECTORS
 from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import ObjectClass
@@ -106,5 +109,34 @@ def test_what_is_not_a_detector_is_refused_with_what_it_lacks(
 
 
 def test_the_usual_detector_is_the_geometric_one() -> None:
-    usual = DetectObject.ports["detector"].default
-    assert DETECTORS.load(usual) is GeometricDetector
+    assert DetectObject.ports["detector"].default is None
+    assert DETECTORS.load(DetectionConfig().detector) is GeometricDetector
+
+
+@pytest.mark.usefixtures("highest")
+@pytest.mark.parametrize("named", [None, "geometric"])
+def test_the_site_chooses_where_the_tree_does_not(
+    named: str | None,
+    onlooker: Callable[..., ScriptedRobot],
+    seen_scene: Callable[[], object],
+) -> None:
+    site = replace(SITE, services={"detect_object": {"detector": "highest"}})
+    inputs = {"object": ObjectClass("mug"), "on": "table", "detector": named}
+    result = run_skill(
+        DetectObject,
+        robot=onlooker(THINGS),
+        site=site,
+        services={"planning_scene": seen_scene(), "localization": object()},
+        inputs=inputs,
+    )
+    if named is None:  # it takes whatever stands highest for a mug
+        assert result.status == "SUCCESS", result.explain()
+    else:
+        assert result.failure.code == "OBJECT_NOT_FOUND"
+
+
+def test_a_site_that_names_no_detector_is_told() -> None:
+    with pytest.raises(ValueError, match="detect_object") as caught:
+        configured(DetectionConfig, {"detector": "geometrik"}, "detect_object")
+    said = "detect_object.detector: no detector is called 'geometrik'; did you mean geometric?"
+    assert str(caught.value) == said

@@ -18,13 +18,14 @@ with lazily():
     from momantu_bt import detector as detectors
     from momantu_bt import labelled
     from momantu_skills.perception.evaluation import measure, precision
+    from momantu_skills.perception.objects import matching
 
 EVERY = 50
 """Pictures between two lines of progress."""
 
 
 def evaluate(
-    detector: Annotated[str, typer.Option(help="An installed detector.")] = "learned",
+    detector: Annotated[str, typer.Option(help="An installed detector.")] = "geometric",
     seeds: Annotated[str, typer.Option(help="One picture for each: 0:200 is 0 to 199.")] = "0:200",
     output: Annotated[
         Path | None, typer.Option("--json", help="Write the figures to this file.")
@@ -65,7 +66,7 @@ def evaluate(
         if count % EVERY == 0:
             left = (time.monotonic() - start) / count * (len(wanted) - count)
             typer.echo(f"{count} of {len(wanted)} pictures, {left / 60:.0f} min left", err=True)
-    found = precision.average_precisions(seen, measure.CATEGORIES)
+    found = precision.average_precisions(seen, matching.KNOWN)
     things = sum(len(picture.true) for picture in seen)
     typer.echo(f"{detector}: {things} things in {len(wanted)} pictures")
     typer.echo(table(found))

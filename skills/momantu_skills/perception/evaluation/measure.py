@@ -15,8 +15,6 @@ from momantu_skills.perception.evaluation.boxes import ROUND, Solid
 from momantu_skills.perception.evaluation.precision import Picture
 from momantu_skills.perception.geometry.regions import depth_inside
 
-CATEGORIES = ("bottle", "bowl", "can", "mug", "box")
-"""What is measured."""
 SPAN = 0.03
 """How far from its true height a surface is looked for, m: the site's own tolerance."""
 AROUND = 0.1

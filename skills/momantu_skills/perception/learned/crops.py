@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.geometry import Array, Transform
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import CameraImage
 from momantu_skills.perception.geometry.regions import depth_inside
 
@@ -61,7 +61,7 @@ def level_frame(odom_from_camera: Transform, height: float) -> Transform:
         ahead = -odom_from_camera.rotation[:2, 1]
     yaw = math.atan2(-ahead[0], ahead[1])
     x, y, _ = odom_from_camera.position
-    return Transform((x, y, height), (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)))
+    return Transform((x, y, height), quaternion_from_axis_angle((0.0, 0.0, 1.0), yaw))
 
 
 def cut(

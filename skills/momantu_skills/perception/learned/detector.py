@@ -16,7 +16,7 @@ from momantu_skills.perception.objects.matching import KNOWN, MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape
 
 with lazily():
-    from momantu_skills.perception.learned import crops, fusing, seeing, weights
+    from momantu_skills.perception.learned import crops, fusing, seeing, solids, weights
     from momantu_skills.perception.learned import standing as surfaces
 
 WEIGHTS = "MOMANTU_BT_LEARNED_WEIGHTS"
@@ -90,7 +90,7 @@ class LearnedDetector:
 
     @staticmethod
     def _object(
-        thing: fusing.Solid, height: float, stamp: float, asked: ObjectClass
+        thing: solids.Solid, height: float, stamp: float, asked: ObjectClass
     ) -> DetectedObject:
         kind = "box" if thing.category == "box" else "cylinder"
         pose = thing.frame_from_object

@@ -15,7 +15,8 @@ from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import depth_inside
 from momantu_skills.perception.learned.crops import Crop, channels, cut
 from momantu_skills.perception.learned.standing import standing
-from momantu_skills.perception.learned.targets import NUMBERS, Targets, Truth, targets
+from momantu_skills.perception.learned.targets import Targets, Truth, targets
+from momantu_skills.perception.objects.matching import KNOWN
 
 FOLDER = "crops-1"
 """Where the crops are kept; its number changes with their kind."""
@@ -55,12 +56,12 @@ def example(made: Labelled) -> Example | None:
     truths = [
         Truth(
             thing.number,
-            NUMBERS.index(thing.category),
+            KNOWN.index(thing.category),
             level_from_camera @ thing.camera_from_object,
             np.array(thing.size),
         )
         for thing in made.things
-        if thing.category in NUMBERS
+        if thing.category in KNOWN
     ]
     numbers = np.ascontiguousarray(made.numbers[crop.rows][:, crop.columns])
     return Example(crop, numbers, truths)

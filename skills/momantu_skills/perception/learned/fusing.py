@@ -15,8 +15,6 @@ SAME = 0.035
 AGREEING = 0.2
 """Relative difference of sizes up to which they are averaged."""
 
-__all__ = ["Look", "Solid", "fused", "height"]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:

@@ -22,7 +22,7 @@ def loss(
     equally good coordinates those count, for each thing as a whole, that are nearest.
     """
     classes, things, valid, true_offsets = truth
-    weights = torch.tensor(CLASS_WEIGHTS)
+    weights = scores.new_tensor(CLASS_WEIGHTS)
     of_classes = nn.functional.cross_entropy(scores, classes, weights, ignore_index=-1)
     n, y, x = torch.nonzero(things >= 0, as_tuple=True)
     if not len(n):
@@ -34,8 +34,8 @@ def loss(
     which = n * (int(things.max()) + 1) + things[n, y, x]
     _, which = torch.unique(which, return_inverse=True)
     count = int(which.max()) + 1
-    sums = torch.zeros(count, apart.shape[1]).index_add_(0, which, apart)
-    cells = torch.zeros(count).index_add_(0, which, torch.ones(len(which)))
+    sums = apart.new_zeros(count, apart.shape[1]).index_add_(0, which, apart)
+    cells = torch.bincount(which).to(apart.dtype)
     # a thing counts by the root of its cells: neither do large ones rule, nor slivers
     share = cells.sqrt() / cells.sqrt().sum()
     of_coordinates = (sums.min(dim=1).values / cells * share).sum()

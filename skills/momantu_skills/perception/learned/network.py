@@ -12,8 +12,9 @@ import torch
 from torch import Tensor, nn
 
 from momantu_skills.perception.learned.crops import CHANNELS
+from momantu_skills.perception.objects.matching import KNOWN
 
-CLASSES = ("nothing", "bottle", "bowl", "can", "mug", "box", "handle")
+CLASSES = ("nothing", *KNOWN, "handle")
 """What a cell shows; a handle is part of a mug."""
 COORDINATES, OFFSETS = 3, 3
 """Numbers of a cell: where it is on its thing, and where the middle of its thing is."""

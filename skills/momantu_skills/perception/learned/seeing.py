@@ -14,7 +14,8 @@ from momantu_skills.perception.learned.crops import Crop, channels
 from momantu_skills.perception.learned.instances import LEAST, instances
 from momantu_skills.perception.learned.network import CLASSES
 from momantu_skills.perception.learned.solids import Solid, solid
-from momantu_skills.perception.learned.targets import NUMBERS, OFFSET_UNIT
+from momantu_skills.perception.learned.targets import OFFSET_UNIT
+from momantu_skills.perception.objects.matching import KNOWN
 
 SHOWN = 0.5
 """Least probability that a cell shows a thing."""
@@ -37,9 +38,9 @@ class Seeing:
         points, coordinates, offsets = points[shown], coordinates[shown], offsets[shown]
         chances = chances[shown]
         owner = instances(points + OFFSET_UNIT * offsets)
-        of_category = np.stack([chances[:, CLASSES.index(name)] for name in NUMBERS], axis=1)
+        of_category = np.stack([chances[:, CLASSES.index(name)] for name in KNOWN], axis=1)
         handle = chances[:, CLASSES.index("handle")]
-        of_category[:, NUMBERS.index("mug")] += handle
+        of_category[:, KNOWN.index("mug")] += handle
         of_handle = handle > chances[:, CLASSES.index("mug")]
         found = []
         for number in range(int(owner.max()) + 1):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.perception.learned.similarity import fit
-from momantu_skills.perception.learned.targets import NUMBERS
+from momantu_skills.perception.objects.matching import KNOWN
 
 TOLERANCE = 0.012
 """Distance between a cell and where the fit has it up to which they agree, m."""
@@ -54,10 +54,10 @@ def solid(
     """The thing of some cells; None if no pose explains them.
 
     points: (n, 3) in a level frame, m. coordinates: (n, 3) normalized. chances: (n, 5) of each
-    category of NUMBERS. of_handle: (n,) which show a handle.
+    category of KNOWN. of_handle: (n,) which show a handle.
     """
     mean = chances.mean(axis=0)
-    category = NUMBERS[int(mean.argmax())]
+    category = KNOWN[int(mean.argmax())]
     found = fit(coordinates, points, TOLERANCE, DIAGONALS, random)
     if found is None:
         return None

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.perception.learned.network import CLASSES
+from momantu_skills.perception.objects.matching import KNOWN
 
 OFFSET_UNIT = 0.1
 """m; unit of the offsets to a thing's middle."""
@@ -27,12 +28,10 @@ HANDLE_CELLS = 8
 """Cells of a handle from which on it tells how a mug is turned."""
 OUTSIDE, OUTSIDE_LEAST = 1.04, 0.0015
 """A mug's cell belongs to its handle beyond this share of the radius and so many metres more."""
-NUMBERS = ("bottle", "bowl", "can", "mug", "box")
-"""Categories with numbers of their own in `Truth`."""
 
 
 class Truth(NamedTuple):
-    """One thing. category: index in NUMBERS. size: (3,) m. number: in the picture."""
+    """One thing. category: index in KNOWN. size: (3,) m. number: in the picture."""
 
     number: int
     category: int
@@ -67,7 +66,7 @@ def targets(
     known = np.isfinite(points[..., 2])
     for index, truth in enumerate(truths):
         seen = numbers == truth.number
-        name = NUMBERS[truth.category]
+        name = KNOWN[truth.category]
         classes[seen] = CLASSES.index(name)
         here = seen & known
         if not here.any():

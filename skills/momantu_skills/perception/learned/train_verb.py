@@ -55,7 +55,9 @@ def train(
         trainings.resume(training, state)
         typer.echo(f"going on at batch {training.step} of {training.steps}", err=True)
     trainings.go_on(training, state, lambda line: typer.echo(line, err=True))
+    told = f"--epochs {epochs} --batch {batch} --rate {rate} --seed {seed}"
     card = {
+        "command": f"momantu-bt perception train {pictures.name} -o {out.name} {told}",
         "pictures": len(training.seeds),
         "seeds": [training.seeds[0], training.seeds[-1]],
         **asdict(plan),

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_skills.perception.objects.shapes import Shape
 
-KNOWN = ("can", "bottle", "mug", "bowl", "box")
-"""Categories that can be recognised by shape."""
+KNOWN = ("bottle", "bowl", "can", "mug", "box")
+"""Categories that detectors can tell apart. The learned detector's weights keep to this order."""
 
 
 @dataclass(frozen=True)

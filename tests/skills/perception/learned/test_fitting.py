@@ -10,7 +10,8 @@ from momantu_skills.perception.learned.fusing import Look, fused
 from momantu_skills.perception.learned.instances import instances
 from momantu_skills.perception.learned.similarity import fit, similarities
 from momantu_skills.perception.learned.solids import Solid, solid
-from momantu_skills.perception.learned.targets import NUMBERS, VALID, Truth, targets
+from momantu_skills.perception.learned.targets import VALID, Truth, targets
+from momantu_skills.perception.objects.matching import KNOWN
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
 from momantu_bt.world import seeded
@@ -42,7 +43,7 @@ def said(points: Array, truth: Truth) -> tuple[Array, Array, Array]:
     grid = points.reshape(-1, 1, 3).astype(np.float32)
     made = targets(grid, np.full(grid.shape[:2], truth.number, dtype=np.uint8), EYE, [truth])
     coordinates = made.coordinates[0, :, :, 0].T.astype(np.float64)
-    chances = np.zeros((len(points), len(NUMBERS)))
+    chances = np.zeros((len(points), len(KNOWN)))
     chances[:, truth.category] = 1.0
     return coordinates, made.offsets[:, :, 0].T * 0.1, chances
 
@@ -97,7 +98,7 @@ def test_few_votes_are_no_thing() -> None:
 def test_perfect_answers_give_the_exact_round_thing(name: str, yaw: float) -> None:
     pose = Transform((0.1, 1.0, 0.06), quaternion_from_axis_angle((0, 0, 1), math.radians(yaw)))
     size = np.array([0.07, 0.07, 0.12])
-    truth = Truth(1, NUMBERS.index(name), pose, size)
+    truth = Truth(1, KNOWN.index(name), pose, size)
     points = around(pose, size)
     coordinates, offsets, chances = said(points, truth)
     assert np.allclose(points + offsets, pose.position, atol=1e-5)
@@ -123,7 +124,7 @@ def test_round_things_say_the_same_however_they_are_turned() -> None:
 def test_a_box_has_four_equally_good_answers() -> None:
     pose = Transform((0.0, 1.0, 0.1), quaternion_from_axis_angle((1, 0, 0), math.pi / 2))
     grid = seeded("box").uniform(-0.04, 0.04, (5, 5, 3)) + np.array([0.0, 1.0, 0.1])
-    truth = Truth(1, NUMBERS.index("box"), pose, np.array([0.05, 0.08, 0.15]))
+    truth = Truth(1, KNOWN.index("box"), pose, np.array([0.05, 0.08, 0.15]))
     made = targets(grid.astype(np.float32), np.ones((5, 5), dtype=np.uint8), EYE, [truth])
     assert made.coordinates.shape[0] == VALID == 4
     heights = made.coordinates[:, 2]
@@ -140,7 +141,7 @@ def test_a_mugs_handle_tells_how_it_is_turned() -> None:
             np.column_stack([np.linspace(0.045, 0.07, 40), np.zeros(40), np.zeros(40)])
         )
         points = np.concatenate([body, bar])
-        coordinates, _, chances = said(points, Truth(1, NUMBERS.index("mug"), pose, size))
+        coordinates, _, chances = said(points, Truth(1, KNOWN.index("mug"), pose, size))
         of_handle = np.arange(len(points)) >= 400
         found = solid(points, coordinates, chances, of_handle, seeded("mug"))
         assert found is not None

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 import safetensors.torch
 import torch
+from momantu_skills.detect_object import DetectObject
 from momantu_skills.perception.learned import examples, training, weights
 from momantu_skills.perception.learned.crops import STEP, channels
 from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
@@ -21,6 +24,11 @@ from momantu_worlds.labelled.studio import Studio
 from momantu_bt import labelled
 from momantu_bt.cli import main
 from momantu_bt.detector import DETECTORS, known_categories
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import ObjectClass
+from momantu_bt.testing import ScriptedRobot, run_skill, scripted_site
+from momantu_bt.testing.painting import Block, Round
+from momantu_bt.world import Surface
 
 
 @pytest.fixture(scope="module")
@@ -199,3 +207,24 @@ def test_a_training_that_cannot_begin_is_told(
     )
     assert main(command) == 2
     assert "belongs to a training with 4 pictures" in capsys.readouterr().err
+
+
+def test_a_search_with_broken_weights_fails_with_their_sentence(
+    onlooker: Callable[..., ScriptedRobot],
+    seen_scene: Callable[[], object],
+    any_weights: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    spoil(any_weights, "text")
+    monkeypatch.setenv(WEIGHTS, str(any_weights))
+    table = Surface(Pose2D(1.0, 0.0, 0.0), (0.6, 1.2), 0.72, (math.pi,))
+    things = [Block((0.6, 1.2, 0.03), (1.0, 0.0, 0.705)), Round((0.95, 0.2, 0.72), 0.13, 0.035)]
+    result = run_skill(
+        DetectObject,
+        robot=onlooker(things),
+        site=scripted_site(surfaces={"table": table}),
+        services={"planning_scene": seen_scene(), "localization": object()},
+        inputs={"object": ObjectClass("can"), "on": "table", "detector": "learned"},
+    )
+    assert result.failure.code == "SKILL_ERROR"
+    assert f"the weights {any_weights} cannot be read" in result.failure.message
