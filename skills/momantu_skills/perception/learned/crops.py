@@ -20,6 +20,8 @@ from momantu_skills.perception.geometry.regions import depth_inside
 
 CHANNELS = 9
 """Height, normal (3), whether there is depth, colour (3), slope of the ray."""
+NORMAL = slice(1, 4)
+"""Where the normal is among the channels."""
 SCALE = 0.0025
 """Size of a pixel at the things' middle distance, m."""
 STEP = 16

@@ -6,13 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
 from momantu_skills.perception.learned import weights
-from momantu_skills.perception.learned.crops import Crop, channels
+from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels
 from momantu_skills.perception.learned.instances import LEAST, instances
 from momantu_skills.perception.learned.network import CLASSES
+from momantu_skills.perception.learned.refining import Seen, refined
 from momantu_skills.perception.learned.solids import Solid, solid
 from momantu_skills.perception.learned.targets import OFFSET_UNIT
 from momantu_skills.perception.objects.matching import KNOWN
@@ -30,14 +32,19 @@ class Seeing:
 
     def solids(self, crop: Crop) -> list[Solid]:
         """The things in a crop, in its frame `level`."""
-        chances, coordinates, offsets = self._said(crop)
+        layers = channels(crop)
+        normals = layers[NORMAL, ::2, ::2].reshape(3, -1).T.astype(np.float64)
+        chances, coordinates, offsets = self._said(layers)
         points = crop.points[::2, ::2].reshape(-1, 3).astype(np.float64)
         shown = (chances[:, 0] < 1.0 - SHOWN) & np.isfinite(points[:, 2])
         if int(shown.sum()) < LEAST:
             return []
+        every = points
         points, coordinates, offsets = points[shown], coordinates[shown], offsets[shown]
-        chances = chances[shown]
+        chances, normals = chances[shown], normals[shown]
         owner = instances(points + OFFSET_UNIT * offsets)
+        free = np.isfinite(every[:, 2]) & ~shown & (every[:, 2] > LOW)
+        around = np.concatenate([every[free], points[owner < 0]])
         of_category = np.stack([chances[:, CLASSES.index(name)] for name in KNOWN], axis=1)
         handle = chances[:, CLASSES.index("handle")]
         of_category[:, KNOWN.index("mug")] += handle
@@ -50,16 +57,20 @@ class Seeing:
                 points[mine], coordinates[mine], of_category[mine], of_handle[mine], random
             )
             if thing is not None:
-                found.append(thing)
+                seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
+                found.append(refined(thing, seen))
         return found
 
-    def _said(self, crop: Crop) -> tuple[Array, Array, Array]:
-        """Chances (n, classes), coordinates (n, 3), offsets (n, 3) of all cells."""
+    def _said(self, layers: NDArray[np.float32]) -> tuple[Array, Array, Array]:
+        """Chances (n, classes), coordinates (n, 3), offsets (n, 3) of all cells.
+
+        layers: (CHANNELS, h, w) of a crop.
+        """
         before = torch.get_num_threads()
         torch.set_num_threads(1)
         try:
             with torch.inference_mode():
-                seen = torch.from_numpy(channels(crop))[None]
+                seen = torch.from_numpy(layers)[None]
                 seen = seen.contiguous(memory_format=torch.channels_last)
                 scores, coordinates, offsets = self._network(seen)
                 parts = (scores.softmax(dim=1), coordinates, offsets)

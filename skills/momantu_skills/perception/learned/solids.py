@@ -93,14 +93,14 @@ def _straightened(rotation: Array, category: str) -> Array:
     axis = rotation[:, best]
     tilt = math.acos(min(1.0, abs(float(axis[2]))))
     if tilt < STRAIGHT:
-        return _turned(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
+        return turned(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
     if category in LEVEL and tilt > math.pi / 2 - STRAIGHT:
         flat = np.array([axis[0], axis[1], 0.0])
-        return _turned(axis, flat / np.linalg.norm(flat)) @ rotation
+        return turned(axis, flat / np.linalg.norm(flat)) @ rotation
     return rotation
 
 
-def _turned(start: Array, end: Array) -> Array:
+def turned(start: Array, end: Array) -> Array:
     """The smallest rotation (3, 3) from one unit vector to another that is not opposite."""
     axis, cosine = np.cross(start, end), float(start @ end)
     cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])

@@ -1,0 +1,131 @@
+"""Turn, size and place by a thing's own points, where what the network said is a little wrong."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from momantu_skills.perception.learned.refining import Seen, refined
+from momantu_skills.perception.learned.solids import Solid
+
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.world import seeded
+
+EYE = 0.8
+"""Height of the camera above the surface, m; it is at x = y = 0."""
+NOTHING = np.zeros((0, 3))
+
+
+def cylinder(pose: Transform, radius: float, height: float) -> tuple[Array, Array]:
+    """Points and normals (n, 3) of the side that the camera sees, in `level`."""
+    draw = seeded("cylinder")
+    bearing = draw.uniform(-math.pi, math.pi, 3000)
+    out = np.column_stack([np.cos(bearing), np.sin(bearing), np.zeros(len(bearing))])
+    own = out * radius
+    own[:, 2] = draw.uniform(-height / 2, height / 2, len(own))
+    points, normals = pose.apply(own), out @ pose.rotation.T
+    shown = ((np.array([0.0, 0.0, EYE]) - points) * normals).sum(axis=1) > 0.0
+    return points[shown], normals[shown]
+
+
+def seen(points: Array, normals: Array, around: Array = NOTHING) -> Seen:
+    return Seen(points, normals, np.zeros(len(points), dtype=bool), around, EYE)
+
+
+def said(category: str, pose: Transform, size: tuple[float, float, float]) -> Solid:
+    return Solid(category, pose, size, 300, 0.9, False)
+
+
+@pytest.mark.parametrize("category", ["can", "bottle"])
+@pytest.mark.parametrize("share", [0.85, 1.2])
+def test_a_round_thing_gets_the_size_and_place_of_its_side(category: str, share: float) -> None:
+    true = Transform((0.1, 1.0, 0.06))
+    points, normals = cylinder(true, 0.033, 0.12)
+    wrong = said(category, Transform((0.105, 1.008, 0.058)), (0.066 * share, 0.066 * share, 0.11))
+    found = refined(wrong, seen(points, normals))
+    assert found.size == pytest.approx((0.066, 0.066, 0.12), abs=0.004)
+    assert np.allclose(found.frame_from_object.position, true.position, atol=0.003)
+
+
+def test_a_thing_that_stands_begins_at_the_surface_though_its_foot_is_hidden() -> None:
+    true = Transform((0.1, 1.0, 0.06))
+    points, normals = cylinder(true, 0.033, 0.12)
+    upper = points[:, 2] > 0.04
+    found = refined(said("can", true, (0.066, 0.066, 0.12)), seen(points[upper], normals[upper]))
+    assert found.size[2] == pytest.approx(0.12, abs=0.004)
+
+
+def test_a_thing_on_another_keeps_its_lower_end() -> None:
+    true = Transform((0.1, 1.0, 0.16))
+    points, normals = cylinder(true, 0.033, 0.12)
+    found = refined(said("can", true, (0.066, 0.066, 0.12)), seen(points, normals))
+    assert found.size[2] == pytest.approx(0.12, abs=0.006)
+    assert found.frame_from_object.position[2] == pytest.approx(0.16, abs=0.003)
+
+
+def test_a_lying_thing_is_turned_as_its_normals_are() -> None:
+    level = quaternion_from_axis_angle((0.0, 1.0, 0.0), math.pi / 2)
+    true = Transform((0.1, 1.0, 0.033), level)
+    points, normals = cylinder(true, 0.033, 0.16)
+    off = quaternion_from_axis_angle((0.0, 0.0, 1.0), math.radians(12.0))
+    wrong = Transform(quaternion=off).rotation @ true.rotation
+    pose = Transform.from_rotation(wrong, true.position)
+    found = refined(said("bottle", pose, (0.066, 0.066, 0.15)), seen(points, normals))
+    cosine = float(found.frame_from_object.rotation[:, 2] @ true.rotation[:, 2])
+    assert math.degrees(math.acos(min(1.0, cosine))) < 1.0
+
+
+def test_a_box_gets_the_turn_and_size_of_its_sides() -> None:
+    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3))
+    draw, half = seeded("box"), np.array([0.04, 0.06, 0.05])
+    own = draw.uniform(-1.0, 1.0, (3000, 3)) * half
+    side = draw.integers(3, size=len(own))
+    own[side == 0, 0] = -half[0]
+    own[side == 1, 1] = -half[1]
+    own[side == 2, 2] = half[2]
+    wrong = Transform((0.105, 0.995, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.4))
+    found = refined(said("box", wrong, (0.095, 0.11, 0.09)), seen(true.apply(own), 0 * own))
+    assert found.size == pytest.approx((0.08, 0.12, 0.10), abs=0.003)
+    assert found.frame_from_object.yaw == pytest.approx(0.3, abs=0.02)
+
+
+@pytest.mark.parametrize("named", [True, False], ids=["by the network", "by what is beside it"])
+@pytest.mark.parametrize("yaw", [-2.0, -0.5])
+def test_a_mug_is_turned_towards_its_handle(named: bool, yaw: float) -> None:
+    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), yaw))
+    points, normals = cylinder(true, 0.04, 0.10)
+    bar = np.column_stack([np.linspace(0.05, 0.07, 20), np.zeros(20), np.linspace(-0.02, 0.02, 20)])
+    handle = true.apply(bar)
+    start = said("mug", Transform(true.position), (0.08, 0.08, 0.10))
+    if named:
+        both = np.concatenate([points, handle])
+        of_handle = np.arange(len(both)) >= len(points)
+        normals = np.concatenate([normals, np.zeros((20, 3))])
+        found = refined(start, Seen(both, normals, of_handle, NOTHING, EYE))
+    else:
+        found = refined(start, seen(points, normals, handle))
+    assert found.handle
+    assert found.frame_from_object.yaw == pytest.approx(yaw, abs=0.05)
+    assert found.size == pytest.approx((0.08, 0.08, 0.10), abs=0.003)
+
+
+def test_a_mug_without_a_handle_in_view_says_so() -> None:
+    true = Transform((0.1, 1.0, 0.05))
+    start = said("mug", true, (0.08, 0.08, 0.10))
+    assert not refined(start, seen(*cylinder(true, 0.04, 0.10))).handle
+
+
+def test_few_points_change_nothing() -> None:
+    true = Transform((0.1, 1.0, 0.05))
+    points, normals = cylinder(true, 0.04, 0.10)
+    start = said("can", true, (0.07, 0.07, 0.09))
+    assert refined(start, seen(points[:10], normals[:10])) is start
+
+
+def test_points_of_another_shape_do_not_move_a_thing_far() -> None:
+    true = Transform((0.1, 1.0, 0.06))
+    points, normals = cylinder(true, 0.10, 0.12)
+    start = said("can", true, (0.066, 0.066, 0.12))
+    found = refined(start, seen(points, normals))
+    assert found.size[:2] == start.size[:2]
