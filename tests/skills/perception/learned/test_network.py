@@ -14,6 +14,7 @@ import pytest
 import safetensors.torch
 import torch
 from momantu_skills.detect_object import DetectObject
+from momantu_skills.perception.evaluation import boxes, measure, precision
 from momantu_skills.perception.learned import examples, training, weights
 from momantu_skills.perception.learned.crops import STEP, channels
 from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
@@ -228,3 +229,31 @@ def test_a_search_with_broken_weights_fails_with_their_sentence(
     )
     assert result.failure.code == "SKILL_ERROR"
     assert f"the weights {any_weights} cannot be read" in result.failure.message
+
+
+def test_the_bundled_weights_are_small_and_say_how_they_were_made() -> None:
+    assert weights.BUNDLED.stat().st_size < 20e6
+    told = weights.card(weights.BUNDLED)
+    assert "perception render" in told["data"]
+    assert "perception train" in told["command"]
+    assert set(told["figures"]) == set(precision.MEASURES)
+
+
+def test_the_bundled_weights_find_most_things(pictures: Path) -> None:
+    right, things = 0, 0
+    for seed in range(4):
+        picture = measure.measured(labelled.read(pictures, seed), LearnedDetector())
+        for true in picture.true:
+            near = [one for one, _ in picture.found if boxes.distance(one, true) < 0.03]
+            things += 1
+            right += true.category in {one.category for one in near}
+    assert right > 0.6 * things
+
+
+def test_the_same_picture_gives_the_same_answer(pictures: Path) -> None:
+    made = labelled.read(pictures, 1)
+    first, again = (measure.measured(made, LearnedDetector()).found for _ in range(2))
+    assert [score for _, score in first] == [score for _, score in again]
+    for (one, _), (other, _) in zip(first, again, strict=True):
+        assert one.size == other.size
+        assert np.array_equal(one.pose.position, other.pose.position)
