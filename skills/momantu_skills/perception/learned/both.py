@@ -28,9 +28,10 @@ class BothDetectors:
 
     Where they agree on category and sizes the object has the pose and sizes that fit the depth
     (those of the learned one for a mug, whose handle it knows), and the better of both scores.
-    Where they differ, the answer with the better score stays, with the mean of both scores. What
-    one alone sees has its score lowered. A heap that the geometric detector takes for one object
-    gives way to the objects that the learned one sees in it.
+    Where they differ, the learned one's answer stays, with the mean of both scores: it tells
+    categories apart better, and knows what lies. What one alone sees has its score lowered. A heap
+    that the geometric detector takes for one object gives way to those that the learned one sees
+    in it.
     """
 
     categories: ClassVar[tuple[str, ...]] = KNOWN
@@ -91,8 +92,7 @@ def _of_two(measured: DetectedObject, learned: DetectedObject) -> DetectedObject
     if measured.category == learned.category and _alike(measured, learned):
         best = learned if learned.category == "mug" else measured
         return replace(best, score=max(measured.score, learned.score))
-    best = max(measured, learned, key=lambda thing: thing.score)
-    return replace(best, score=(measured.score + learned.score) / 2)
+    return replace(learned, score=(measured.score + learned.score) / 2)
 
 
 def _alike(one: DetectedObject, other: DetectedObject) -> bool:

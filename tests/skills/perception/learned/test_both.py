@@ -82,7 +82,7 @@ def test_a_mug_is_turned_as_the_learned_one_says() -> None:
 )
 def test_what_they_differ_about_gets_the_mean_score(learned: DetectedObject) -> None:
     found = both([CAN], [learned])
-    assert found == (replace(CAN, score=0.45),)
+    assert found == (replace(learned, score=0.45),)
     assert found[0].score < BothDetectors().accepted
 
 
