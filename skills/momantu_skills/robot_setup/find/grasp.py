@@ -72,7 +72,9 @@ def find_grasp(body: Body, hand: Hand) -> Grasp:
     if hand.single:
         tip = ahead[int(np.argmax(np.linalg.norm(ahead, axis=1)))]
         behind = behind[np.linalg.norm(behind - tip, axis=1) < 2 * float(hand.widths[0])]
-    x = _outwards(palm, np.vstack([ahead, behind]), y)
+    poses = body.link_poses(posture, [branch.links[0] for branch in hand.branches])
+    roots = _in_palm(np.array([pose[:3, 3] for pose in poses.values()]), base_from_palm)
+    x = _outwards(palm, roots, np.vstack([ahead, behind]), y)
     axes = np.stack([x, np.cross(np.cross(x, y), x), np.cross(x, y)], axis=1)
     origin, length, height = _pads(ahead @ axes, behind @ axes)
     place = Transform.from_rotation(axes, axes @ origin)
@@ -129,17 +131,27 @@ def _snapped(direction: Array) -> Array:
     return axis if float(direction @ axis) > np.cos(SNAP) else direction
 
 
-def _outwards(palm: Array, fingers: Array, y: Array) -> Array:
-    """From the palm to the fingers, square to the closing direction."""
-    centre = _middle(palm) if len(palm) else np.zeros(3)
-    out = _middle(fingers) - centre
-    out = out - (out @ y) * y
-    length = float(np.linalg.norm(out))
-    if length < 1e-6:  # the fingers sit around the palm's middle: out is any way square to y
-        out, length = np.cross(y, np.eye(3)[int(np.argmin(np.abs(y)))]), 1.0
-    snapped = _snapped(out / np.linalg.norm(out))
-    snapped = snapped - (snapped @ y) * y
+def _outwards(palm: Array, roots: Array, fingers: Array, y: Array) -> Array:
+    """From the palm to the fingers, square to the closing direction.
+
+    A camera on a palm moves its middle aside, and so do hinges beside it the middle of the fingers'
+    roots: of both, that counts whose direction is nearer to an axis of the palm's frame.
+    """
+    tips = _middle(fingers)
+    starts = [_middle(points) for points in (palm, roots) if len(points)]
+    ways = [_square(tips - start, y) for start in starts]
+    lengths = [float(np.linalg.norm(way)) for way in ways]
+    found = [way / length for way, length in zip(ways, lengths, strict=True) if length > SHORT]
+    if found:
+        out = max(found, key=lambda way: round(float(np.abs(way).max()), 6))
+    else:  # the fingers sit around the palm's middle: out is any way square to y
+        out = np.cross(y, np.eye(3)[int(np.argmin(np.abs(y)))])
+    snapped = _square(_snapped(out / np.linalg.norm(out)), y)
     return np.asarray(snapped / np.linalg.norm(snapped))
+
+
+def _square(way: Array, y: Array) -> Array:
+    return np.asarray(way - (way @ y) * y)
 
 
 def _middle(points: Array) -> Array:

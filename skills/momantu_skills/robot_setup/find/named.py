@@ -207,6 +207,9 @@ def _carry(finder: PoseFinder, hand: LimbSolver | None, ahead: np.ndarray) -> Fo
         if len(found) >= LEVEL:
             break
     best = finder.cheapest(found, cost)
+    if best is None and found:  # parts of a wrist may always be near each other in a level hand
+        finder = finder.allowing(found)
+        best = finder.cheapest(found, cost)
     return None if best is None else _pose(finder, *best)
 
 

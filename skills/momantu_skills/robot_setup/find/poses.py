@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from itertools import islice, product
 
@@ -118,7 +119,8 @@ class PoseFinder:
         carried = set(skeleton.subtree(skeleton.joints[self.arm.joints[0]].child))
         moved = [pair for pair in pairs if set(pair) & carried]
         moved = [pair for pair in moved if not any(set(pair) <= links for links in own)]
-        self._contacts = {m: Contacts(body, moved, m, _close(body, moved, m)) for m in MARGINS}
+        self._moved = moved
+        self._contacts = self._judges(body.random_configurations(PARTING, seed=1))
         self._outline = _half_planes(stand.footprint)
         self._openings = [
             {name: q for hand in hands for name, q in hand.posture(share).items()}
@@ -126,6 +128,18 @@ class PoseFinder:
         ]
         at = {**body.rest(), **(still or {})}
         self.still = {name: at[name] for name in self._others()}
+
+    def _judges(self, draws: Array) -> dict[float, Contacts]:
+        """Contacts by margin. Pairs that are nearer in nearly all of draws (n, nq) may be so."""
+        body, moved = self.body, self._moved
+        return {m: Contacts(body, moved, m, _close(body, moved, m, draws)) for m in MARGINS}
+
+    def allowing(self, postures: Sequence[Mapping[str, float]]) -> PoseFinder:
+        """The same finder, for which links may be as near as nearly all of these postures need."""
+        other = copy(self)
+        draws = [self.body.configuration(posture) for posture in postures[:PARTING]]
+        other._contacts = self._judges(np.array(draws))
+        return other
 
     def _others(self) -> tuple[str, ...]:
         other = tuple(name for limb in self.limbs.others for name in limb.joints)
@@ -338,9 +352,10 @@ def _outside(outline: Array, corners: Array, around: float) -> float:
     return max(0.0, float(beyond.max()) + around)
 
 
-def _close(body: Body, pairs: list[tuple[str, str]], margin: float) -> dict[tuple[str, str], float]:
-    """The pairs that cannot keep a margin, in nearly every posture, and what they can keep, m."""
-    draws = body.random_configurations(PARTING, seed=1)
+def _close(
+    body: Body, pairs: list[tuple[str, str]], margin: float, draws: Array
+) -> dict[tuple[str, str], float]:
+    """The pairs that cannot keep a margin, in nearly all of draws (n, nq), and what they can, m."""
     close: dict[tuple[str, str], float] = {}
     tried = (margin, *(m for m in CLOSE if m < margin))
     for clearance, less in zip(tried, (*tried[1:], 0.0), strict=True):
