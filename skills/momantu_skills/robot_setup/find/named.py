@@ -35,6 +35,8 @@ FAR_OUT = 0.1
 OUT, BESIDE = 2.0, 5.0
 """Cost of an arm that leaves the footprint, per m, where 1 is an arm that fills the picture: while
 the robot drives, and beside a table."""
+CROWDED = 10.0
+"""Cost of what is held reaching into the robot, per m."""
 GLIMPSE = 0.02
 """Share of the arm's corners that may be in the picture without being in the way."""
 LEVEL, DRAWS = 800, 20
@@ -199,7 +201,8 @@ def _carry(finder: PoseFinder, hand: LimbSolver | None, ahead: np.ndarray) -> Fo
 
     def cost(posture: Mapping[str, float]) -> float:
         corners = finder.corners(posture)
-        return 2 * finder.outside(corners, HELD) + finder.covered(posture, corners)
+        crowded = CROWDED * finder.crowded(posture, hand.place(posture))
+        return 2 * finder.outside(corners, HELD) + finder.covered(posture, corners) + crowded
 
     found: list[dict[str, float]] = []
     for _ in range(DRAWS):

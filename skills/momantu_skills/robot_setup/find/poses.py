@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from itertools import islice, product
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.robot_setup.find.arms import Limbs
@@ -47,7 +48,7 @@ TARGETS = 120
 SEEDS = 6
 """Start postures for each."""
 HELD = 0.06
-"""Assumed radius of a held object around the grasp frame, m."""
+"""Assumed radius of a held object around the grasp frame, m; it is twice as tall as wide."""
 TABLE = 0.7
 """Height above the floor that `ready` looks at, m."""
 FLOOR_AHEAD = 2.0
@@ -121,6 +122,12 @@ class PoseFinder:
         moved = [pair for pair in moved if not any(set(pair) <= links for links in own)]
         self._moved = moved
         self._contacts = self._judges(body.random_configurations(PARTING, seed=1))
+        own_hand = set(self.arm.hand.links) if self.arm.hand is not None else set()
+        self._solid = {
+            link: ConvexHull(hull).equations
+            for link, hull in body.hulls.items()
+            if link not in own_hand
+        }
         self._outline = _half_planes(stand.footprint)
         self._openings = [
             {name: q for hand in hands for name, q in hand.posture(share).items()}
@@ -181,6 +188,18 @@ class PoseFinder:
         if self.eye is None or self.eye.in_hand:
             return 0.0
         return float(in_view(corners, self.optical(posture), self.eye.fov).mean())
+
+    def crowded(self, posture: Mapping[str, float], base_from_grasp: Transform) -> float:
+        """How far what is held upright reaches into links that are not the hand's, m."""
+        upright = np.linspace(-HELD, HELD, 3)[:, None] * (0.0, 0.0, 1.0)
+        held = base_from_grasp.position + upright
+        poses = self.body.link_poses(posture, self._solid)
+        nearest = HELD
+        for link, planes in self._solid.items():
+            local = (held - poses[link][:3, 3]) @ poses[link][:3, :3]
+            away = (local @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+            nearest = min(nearest, float(away.min()))
+        return HELD - nearest
 
     def optical(self, posture: Mapping[str, float]) -> Transform:
         """base_from_optical."""

@@ -55,6 +55,10 @@ class LimbSolver:
             return self.group.solve_upright(poses, poses[:, :3, 3], starts, math.inf)
         return self.group.solve(poses, starts)
 
+    def place(self, posture: Mapping[str, float]) -> Transform:
+        """base_from_frame in a posture."""
+        return self.group.tip_pose(np.array([posture[name] for name in self.group.names]))
+
     def starts(self, count: int) -> Array:
         """Random joints (count, n) within the limits."""
         lower = np.where(self.group.endless, -np.pi, self.group.lower)
