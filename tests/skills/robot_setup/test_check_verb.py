@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,9 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, body_pairs
 from momantu_skills.robot_setup.check.robot import check_robot
 from momantu_skills.robot_setup.check_verb import check
+from momantu_skills.robot_setup.find.named import TIPS
 from momantu_skills.robot_setup.find.proposal import Proposal, propose
-from momantu_skills.robot_setup.write.writer import robot_file
+from momantu_skills.robot_setup.write.writer import robot_file, without
 from momantu_worlds.robots import fetch
 from typer import Typer
 from typer.testing import CliRunner
@@ -311,3 +313,35 @@ def test_every_pose_that_is_proposed_is_clear_with_any_opening(
         for width in np.linspace(0.0, robot.hand.max_width, 5):
             posture = model.posture(pose, float(width))
             assert CollisionWorld(body_pairs(model), posture, margin=0.004).free(q), (name, width)
+
+
+def test_pads_that_lean_are_told_by_setup_and_check(rolling_urdf: Path, tmp_path: Path) -> None:
+    text = rolling_urdf.read_text()
+    for side, turn in (("0.005", 0.6), ("-0.005", -0.6)):
+        before = f'<origin xyz="{side} 0 0.085" rpy="0 0 0"/>'
+        assert before in text
+        text = text.replace(before, f'<origin xyz="{side} 0 0.085" rpy="0 {turn} 0"/>')
+    (tmp_path / "leaning.urdf").write_text(text)
+    proposal = propose(tmp_path / "leaning.urdf", samples=200)
+    assert any(lack.startswith("no even grip: half open,") for lack in without(proposal))
+    (tmp_path / "robot.yaml").write_text(robot_file(proposal, tmp_path))
+    found = {finding.code: finding for finding in check_robot(read_robot(tmp_path))}
+    assert "what is round is held at an edge" in found["pads-lean"].message
+
+
+def test_a_hand_that_carries_things_on_their_side(wrong: Wrong, rolling_proposal: Proposal) -> None:
+    roll = rolling_proposal.poses["carry"].joints["roll"]
+    text = robot_file(rolling_proposal, Path())
+    block = text[text.index("  carry:\n") : text.index("  look_around:\n")]
+    line = next(line for line in block.splitlines() if line.strip().startswith("roll:"))
+    tipped = block.replace(line, f"    roll: {roll + 1.5708:.4f}")
+    finding = next(f for f in wrong((block, tipped)) if f.code == "carry-not-level")
+    assert "90 deg off the horizontal" in finding.message
+
+
+def test_setup_says_that_what_is_carried_tips(rolling_proposal: Proposal) -> None:
+    carry = replace(rolling_proposal.poses["carry"], notes=(TIPS,))
+    tipping = replace(rolling_proposal, poses={**rolling_proposal.poses, "carry": carry})
+    assert without(rolling_proposal) == ()
+    (lack,) = without(tipping)
+    assert lack.startswith("no level `carry`: no clear posture was found that holds the hand level")

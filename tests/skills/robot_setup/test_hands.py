@@ -313,3 +313,18 @@ def test_a_motor_beside_the_fingers_leads_them_and_their_springs_stay() -> None:
     limbs = find_limbs(body, (hand,), None, ())
     assert {"ls", "rs"} <= set(limbs.rest)
     assert "motor" not in limbs.rest
+
+
+@pytest.mark.parametrize("aside", ["0 0.08 0.03", "0 -0.1 0", "0.09 0 0.02"])
+def test_a_camera_on_the_palm_does_not_turn_the_grasp_frame(aside: str) -> None:
+    body = body_of(
+        *palm(0.08),
+        link("eye", box(0.03, 0.03, 0.03)),
+        joint("bracket", "palm", "eye", aside, kind="fixed"),
+        link("lf", box(0.01, 0.02, 0.06), "-0.045 0 0.12"),
+        link("rf", box(0.01, 0.02, 0.06), "0.045 0 0.12"),
+        *slides(0.035),
+    )
+    _, grasp = only_hand(body)
+    assert grasp.link_from_grasp is not None
+    assert grasp.link_from_grasp.rotation[:, 0] == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from momantu_skills.robot_setup.find.poses import HELD
 from momantu_skills.robot_setup.find.proposal import Proposal, propose
+from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.skeleton import read_skeleton
 from momantu_skills.robot_setup.write.sensor_writer import sensor_names
+from momantu_skills.robot_setup.write.writer import robot_file
 from momantu_worlds.robots import fetch
+from scipy.spatial import ConvexHull
 
+from momantu_bt.formats.urdf import read_urdf
+from momantu_bt.geometry import Transform
 from momantu_bt.robot import RobotDescription
+from momantu_bt.robots import read_robot
 
 
 def test_the_rolling_robot_stands_on_its_wheels(rolling_proposal: Proposal) -> None:
@@ -129,3 +139,21 @@ def test_fetch_comes_near_to_what_a_person_wrote(by_hand: RobotDescription) -> N
     camera, laser = found.sensors[:2]
     assert camera.link == by_hand.camera()[1].frame
     assert laser.link == by_hand.laser()[1].frame
+
+
+@pytest.mark.parametrize("name", ["rolling_proposal", "bolted_proposal"])
+def test_what_is_carried_is_clear_of_the_robot(
+    name: str, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    proposal: Proposal = request.getfixturevalue(name)
+    (tmp_path / "robot.yaml").write_text(robot_file(proposal, tmp_path))
+    robot = read_robot(tmp_path)
+    carry = robot.named_poses["carry"]
+    hand = robot.kinematics().base_from_frame(robot.hand.frame, carry)
+    held = (hand @ Transform((robot.hand.grasp_offset, 0.0, 0.0))).position
+    body = Body(read_skeleton(read_urdf(robot.urdf)), robot)
+    poses = body.link_poses(carry)
+    for link, corners in body.hulls.items():
+        if link not in robot.hand.touch_links:
+            planes = ConvexHull(placed(corners, poses[link])).equations
+            assert (planes[:, :3] @ held + planes[:, 3]).max() > 0.9 * HELD, link

@@ -16,7 +16,7 @@ from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.find.reach import reached
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body, placed
-from momantu_skills.robot_setup.urdf.rays import opening_between
+from momantu_skills.robot_setup.urdf.rays import facing, opening_between, too_short
 
 ALONG = 0.7
 """Least cosine between the grasp frame's axes and their required directions; less means a wrong
@@ -28,6 +28,8 @@ MISFIT = (0.012, 0.15)
 width."""
 SAMPLES = (0.3, 0.6, 1.0)
 """Shares of the widest opening at which the table is compared with the fingers."""
+LEVEL = math.radians(25)
+"""How far off the horizontal the fingers may close in the pose `carry`, rad."""
 HEIGHT_SHARE = 0.2
 """Share of the tables' heights at which objects at the largest distance must be in reach."""
 
@@ -57,6 +59,44 @@ def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtK
         yield from _outwards(description, body, palm, closed)
         yield from _filled(description, body, palm)
         yield from _widths(description, body, fingers)
+        yield from _facing(description, body, fingers)
+    yield from _carried(description)
+
+
+def _facing(
+    description: RobotDescription, body: Body, fingers: tuple[str, ...]
+) -> Iterator[FindingAtKeys]:
+    """Pads that do not face each other while the hand is half open."""
+    effector = description.hand
+    corners = _in_grasp(description, body, fingers, effector.max_width / 2)
+    length = facing(corners, effector.pad_length)
+    if too_short(length, effector.pad_length):
+        yield FindingAtKeys(
+            Severity.WARNING,
+            "pads-lean",
+            f"half open, the fingers face each other over {1000 * (length or 0):.0f} mm of "
+            f"{1000 * effector.pad_length:.0f}: what is round is held at an edge and turns in the "
+            "hand",
+            "look whether `frame` lies between the pads and `pad_length` is theirs; a hand whose "
+            "pads turn on their fingers needs joints for that in the URDF",
+            ("end_effector", "frame"),
+        )
+
+
+def _carried(description: RobotDescription) -> Iterator[FindingAtKeys]:
+    """A pose `carry` in which the fingers do not close level."""
+    pose = description.named_poses["carry"]
+    closing = description.kinematics().base_from_frame(description.hand.frame, pose).rotation[:, 1]
+    lean = math.asin(min(abs(float(closing[2])), 1.0))
+    if lean > LEVEL:
+        yield FindingAtKeys(
+            Severity.WARNING,
+            "carry-not-level",
+            f"in the pose carry the fingers close {math.degrees(lean):.0f} deg off the horizontal: "
+            "what was gripped from the side leans as much",
+            "give joints that hold the hand level",
+            ("named_poses", "carry"),
+        )
 
 
 def _fingers(description: RobotDescription, body: Body) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.robot_setup.find.fingers import STEPS, Hand
 from momantu_skills.robot_setup.urdf.body import Body, placed
-from momantu_skills.robot_setup.urdf.rays import opening_between
+from momantu_skills.robot_setup.urdf.rays import facing, opening_between
 
 SNAP = 0.2
 """Directions within this angle to an axis of the palm's frame are set to that axis, rad."""
@@ -44,7 +44,8 @@ class Grasp:
 
     link: what the frame is fixed to. link_from_grasp: where, None where the link itself, moved by
     `offset` along its x, is the grasp frame. force_known: whether the URDF's efforts gave it.
-    thinnest: opening of the hand when it is closed.
+    thinnest: opening of the hand when it is closed. facing: length over which the pads face each
+    other half open, None where that was not measured.
     """
 
     link: str
@@ -58,6 +59,7 @@ class Grasp:
     hand_clearance: float
     opening: dict[str, tuple[tuple[float, float], ...]]
     thinnest: float
+    facing: float | None = None
 
 
 def find_grasp(body: Body, hand: Hand) -> Grasp:
@@ -96,7 +98,21 @@ def find_grasp(body: Body, hand: Hand) -> Grasp:
         clearance,
         _opening(hand),
         float(hand.widths[-1]),
+        _facing(body, hand, place, length),
     )
+
+
+def _facing(body: Body, hand: Hand, place: Transform, length: float) -> float | None:
+    """Over what length the pads face each other half open, m; None for a jaw against a palm."""
+    return None if hand.single else facing(_around(body, hand, place, _half_open(hand)), length)
+
+
+def _around(body: Body, hand: Hand, place: Transform, share: float) -> list[Array]:
+    """Corners (n, 3) of each finger in the grasp frame, `share` of the way to closed."""
+    poses = body.link_poses(hand.posture(share))
+    grasp_from_base = (Transform.from_matrix(poses[hand.palm]) @ place).inverse()
+    fingers = [n for n in (*hand.ahead, *hand.behind) if n in body.hulls]
+    return [grasp_from_base.apply(placed(body.hulls[n], poses[n])) for n in fingers]
 
 
 def _widths_at(body: Body, hand: Hand, place: Transform, length: float, height: float) -> Array:
@@ -105,11 +121,7 @@ def _widths_at(body: Body, hand: Hand, place: Transform, length: float, height: 
         return hand.widths
     widths = []
     for share in np.linspace(0.0, 1.0, STEPS):
-        poses = body.link_poses(hand.posture(share))
-        grasp_from_base = (Transform.from_matrix(poses[hand.palm]) @ place).inverse()
-        fingers = [n for n in (*hand.ahead, *hand.behind) if n in body.hulls]
-        corners = [grasp_from_base.apply(placed(body.hulls[n], poses[n])) for n in fingers]
-        gap = opening_between(corners, length, height)
+        gap = opening_between(_around(body, hand, place, share), length, height)
         if gap is None:
             return hand.widths
         widths.append(gap)

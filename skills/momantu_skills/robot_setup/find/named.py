@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -35,6 +36,7 @@ FAR_OUT = 0.1
 OUT, BESIDE = 2.0, 5.0
 """Cost of an arm that leaves the footprint, per m, where 1 is an arm that fills the picture: while
 the robot drives, and beside a table."""
+TIPS = "no clear posture was found that holds the hand level: what is held tips"
 CROWDED = 10.0
 """Cost of what is held reaching into the robot, per m."""
 GLIMPSE = 0.02
@@ -65,7 +67,8 @@ def find_poses(
     else:
         ready = _view(finder, camera, closed, table, 0.9) or home
         around = _view(finder, camera, closed, far, 1.2) or home
-    carry = _carry(finder, hand, ahead) or home
+    tipped = home if hand is None else replace(home, notes=(*home.notes, TIPS))
+    carry = _carry(finder, hand, ahead) or tipped
     found = {"home": home, "ready": ready, "carry": carry, "look_around": around}
     return {name: _finished(finder, pose) for name, pose in found.items()}
 

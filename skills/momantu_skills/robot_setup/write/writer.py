@@ -11,8 +11,10 @@ import numpy as np
 
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.matrix import Why
+from momantu_skills.robot_setup.find.named import TIPS
 from momantu_skills.robot_setup.find.proposal import Proposal
 from momantu_skills.robot_setup.find.reach import HEIGHTS, Reach
+from momantu_skills.robot_setup.urdf.rays import too_short
 from momantu_skills.robot_setup.write.arm_writer import (
     actuator_lines,
     end_effector_lines,
@@ -74,12 +76,26 @@ def without(proposal: Proposal) -> tuple[str, ...]:
         )
     if proposal.grasp is not None and not proposal.reach.measured:
         found.append(_no_reach(proposal.reach))
+    found += _weak_holds(proposal)
     kinds = {sensor.kind for sensor in proposal.sensors}
     if "camera" not in kinds:
         found.append("no camera: trees that look for anything are refused")
     if not kinds & {"laser", "lidar"}:
         found.append("no laser: trees that drive are refused, as it cannot localize itself")
     return tuple(found)
+
+
+def _weak_holds(proposal: Proposal) -> Iterator[str]:
+    """Why the hand may lose what it holds."""
+    grasp, carry = proposal.grasp, proposal.poses.get("carry")
+    if grasp is not None and too_short(grasp.facing, grasp.pad_length):
+        yield (
+            f"no even grip: half open, the fingers face each other over "
+            f"{1000 * (grasp.facing or 0):.0f} mm of {1000 * grasp.pad_length:.0f}. What is round "
+            "is held at an edge and turns in the hand, and trees that carry it may fail"
+        )
+    if grasp is not None and carry is not None and TIPS in carry.notes:
+        yield f"no level `carry`: {TIPS}, and trees that carry may fail"
 
 
 def _no_reach(reach: Reach) -> str:
