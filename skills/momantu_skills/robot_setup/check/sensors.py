@@ -82,7 +82,8 @@ def _camera(
             Severity.WARNING,
             "camera-tilted",
             f"in {in_poses([pose])} the picture of {name} does not stand upright",
-            "name an optical frame: z out of the camera, x to the right, y down",
+            "name an optical frame: z out of the camera, x to the right, y down; nothing is to do "
+            "where the camera itself is mounted so",
             ("sensors", name, "frame"),
         )
 

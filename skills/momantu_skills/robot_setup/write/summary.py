@@ -32,7 +32,8 @@ def lines(proposal: Proposal) -> Iterator[str]:
     if grasp is not None:
         yield (
             f"hand         opens to {1000 * grasp.max_width:.0f} mm, grasps at {grasp.link}"
-            f"{'' if grasp.link_from_grasp is None else ' (a frame was added)'}"
+            f"{'' if grasp.link_from_grasp is None else ' (a frame was added)'}, closes with "
+            f"{grasp.max_force:g} N{'' if grasp.force_known else ' (guessed)'}"
         )
     named = sensor_names(proposal)
     for name, sensor in named.items():
@@ -65,6 +66,11 @@ def _reach(proposal: Proposal) -> Iterator[str]:
     turned = f", {math.degrees(reach.heading):.0f} deg from ahead" if reach.heading else ""
     beside = f", {reach.lateral:g} m to the left" if reach.lateral else ""
     yield f"reach        {near:g} to {far:g} m{turned}{beside}, best {best:g}; {off}{sure}"
+    if reach.measured and reach.freedoms < 6:
+        yield (
+            f"             the arm moves the hand in {reach.freedoms} of six directions and turns: "
+            "the base brings things onto its line of reach"
+        )
 
 
 def plain(proposal: Proposal) -> dict[str, Any]:
