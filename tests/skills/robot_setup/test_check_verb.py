@@ -315,20 +315,6 @@ def test_every_pose_that_is_proposed_is_clear_with_any_opening(
             assert CollisionWorld(body_pairs(model), posture, margin=0.004).free(q), (name, width)
 
 
-def test_pads_that_lean_are_told_by_setup_and_check(rolling_urdf: Path, tmp_path: Path) -> None:
-    text = rolling_urdf.read_text()
-    for side, turn in (("0.005", 0.6), ("-0.005", -0.6)):
-        before = f'<origin xyz="{side} 0 0.085" rpy="0 0 0"/>'
-        assert before in text
-        text = text.replace(before, f'<origin xyz="{side} 0 0.085" rpy="0 {turn} 0"/>')
-    (tmp_path / "leaning.urdf").write_text(text)
-    proposal = propose(tmp_path / "leaning.urdf", samples=200)
-    assert any(lack.startswith("no even grip: half open,") for lack in without(proposal))
-    (tmp_path / "robot.yaml").write_text(robot_file(proposal, tmp_path))
-    found = {finding.code: finding for finding in check_robot(read_robot(tmp_path))}
-    assert "what is round is held at an edge" in found["pads-lean"].message
-
-
 def test_a_hand_that_carries_things_on_their_side(wrong: Wrong, rolling_proposal: Proposal) -> None:
     roll = rolling_proposal.poses["carry"].joints["roll"]
     text = robot_file(rolling_proposal, Path())

@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.robot_setup.urdf.rays import (
-    blocked,
-    crossings,
-    facing,
-    opening_between,
-    planes_of,
-    too_short,
-)
+from momantu_skills.robot_setup.urdf.rays import blocked, crossings, opening_between, planes_of
 
 COORDINATE = st.floats(-3, 3)
 BOX = np.array(list(product((-1.0, 1.0), (-0.5, 0.5), (-0.25, 0.25))))
@@ -54,20 +47,3 @@ def test_fingers_to_both_sides_leave_their_distance() -> None:
     left, right = finger + np.array([0.0, 0.03, 0.0]), finger + np.array([0.0, -0.05, 0.0])
     assert opening_between([left, right], 0.02, 0.02) == pytest.approx(0.07)
     assert opening_between([left], 0.02, 0.02) is None
-
-
-@pytest.mark.parametrize("lean", [0.0, 0.1, 0.5, -0.5])
-def test_fingers_that_lean_face_each_other_over_little(lean: float) -> None:
-    c, s = np.cos(lean), np.sin(lean)
-    pad = np.array(list(product((-0.02, 0.02), (-0.005, 0.005), (-0.01, 0.01))))
-    turned = pad @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]).T + (0.0, 0.04, 0.0)
-    length = facing([turned, turned * (1.0, -1.0, 1.0)], 0.036)
-    assert length is not None
-    assert too_short(length, 0.036) == (abs(lean) > 0.3)
-    if lean == 0.0:
-        assert length == pytest.approx(0.036)
-
-
-def test_one_finger_faces_nothing() -> None:
-    assert facing([BOX + np.array([0.0, 2.0, 0.0])], 0.1) is None
-    assert not too_short(None, 0.1)

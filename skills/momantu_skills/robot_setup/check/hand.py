@@ -16,7 +16,7 @@ from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.find.reach import reached
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body, placed
-from momantu_skills.robot_setup.urdf.rays import facing, opening_between, too_short
+from momantu_skills.robot_setup.urdf.rays import opening_between
 
 ALONG = 0.7
 """Least cosine between the grasp frame's axes and their required directions; less means a wrong
@@ -59,28 +59,7 @@ def check_hand(description: RobotDescription, body: Body) -> Iterator[FindingAtK
         yield from _outwards(description, body, palm, closed)
         yield from _filled(description, body, palm)
         yield from _widths(description, body, fingers)
-        yield from _facing(description, body, fingers)
     yield from _carried(description)
-
-
-def _facing(
-    description: RobotDescription, body: Body, fingers: tuple[str, ...]
-) -> Iterator[FindingAtKeys]:
-    """Pads that do not face each other while the hand is half open."""
-    effector = description.hand
-    corners = _in_grasp(description, body, fingers, effector.max_width / 2)
-    length = facing(corners, effector.pad_length)
-    if too_short(length, effector.pad_length):
-        yield FindingAtKeys(
-            Severity.WARNING,
-            "pads-lean",
-            f"half open, the fingers face each other over {1000 * (length or 0):.0f} mm of "
-            f"{1000 * effector.pad_length:.0f}: what is round is held at an edge and turns in the "
-            "hand",
-            "look whether `frame` lies between the pads and `pad_length` is theirs; a hand whose "
-            "pads turn on their fingers needs joints for that in the URDF",
-            ("end_effector", "frame"),
-        )
 
 
 def _carried(description: RobotDescription) -> Iterator[FindingAtKeys]:

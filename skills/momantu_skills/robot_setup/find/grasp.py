@@ -13,7 +13,7 @@ from scipy.spatial import ConvexHull
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.robot_setup.find.fingers import STEPS, Hand
 from momantu_skills.robot_setup.urdf.body import Body, placed
-from momantu_skills.robot_setup.urdf.rays import facing, opening_between
+from momantu_skills.robot_setup.urdf.rays import opening_between
 
 SNAP = 0.2
 """Directions within this angle to an axis of the palm's frame are set to that axis, rad."""
@@ -44,8 +44,7 @@ class Grasp:
 
     link: what the frame is fixed to. link_from_grasp: where, None where the link itself, moved by
     `offset` along its x, is the grasp frame. force_known: whether the URDF's efforts gave it.
-    thinnest: opening of the hand when it is closed. facing: length over which the pads face each
-    other half open, None where that was not measured.
+    thinnest: opening of the hand when it is closed.
     """
 
     link: str
@@ -59,7 +58,6 @@ class Grasp:
     hand_clearance: float
     opening: dict[str, tuple[tuple[float, float], ...]]
     thinnest: float
-    facing: float | None = None
 
 
 def find_grasp(body: Body, hand: Hand) -> Grasp:
@@ -98,13 +96,7 @@ def find_grasp(body: Body, hand: Hand) -> Grasp:
         clearance,
         _opening(hand),
         float(hand.widths[-1]),
-        _facing(body, hand, place, length),
     )
-
-
-def _facing(body: Body, hand: Hand, place: Transform, length: float) -> float | None:
-    """Over what length the pads face each other half open, m; None for a jaw against a palm."""
-    return None if hand.single else facing(_around(body, hand, place, _half_open(hand)), length)
 
 
 def _around(body: Body, hand: Hand, place: Transform, share: float) -> list[Array]:

@@ -12,13 +12,6 @@ from momantu_bt.geometry import Array
 PAD_ALONG = 0.2
 """Share of the pads' length, to each side of their centre, that is measured: fingers that rotate
 are closer to each other at one end."""
-FACING = 0.006
-"""How much farther apart than at their nearest fingers still count as facing each other, m."""
-ALONG = 0.002
-"""Step along the pads at which this is measured, m."""
-LEAST_FACING = (0.018, 0.35)
-"""Shortest length over which pads must face each other to hold a round thing, m, and as a share of
-their own; on shorter ones it rests on an edge and turns."""
 PARALLEL = 1e-12
 """A ray is parallel to a plane if the dot product of its direction and the normal is below this."""
 
@@ -60,29 +53,6 @@ def opening_between(fingers: Sequence[Array], pad_length: float, pad_height: flo
         nearest = [np.where(leave > 0, np.maximum(enter, 0.0), np.inf) for enter, leave in spans]
         ends.append(float(np.min(nearest)))
     return sum(ends) if np.isfinite(ends).all() else None
-
-
-def facing(fingers: Sequence[Array], pad_length: float) -> float | None:
-    """Over what length along x fingers face each other at the grasp frame, m.
-
-    fingers: corners (n, 3) of each one's hull in that frame. None if one side has no finger.
-    """
-    along = np.arange(-pad_length / 2, pad_length / 2 + ALONG / 2, ALONG)
-    starts = np.column_stack([along, np.zeros((len(along), 2))])
-    solids = [planes_of(corners) for corners in fingers]
-    gaps = np.zeros(len(along))
-    for side in (1.0, -1.0):
-        spans = [crossings(s, starts, np.tile([0.0, side, 0.0], (len(along), 1))) for s in solids]
-        nearest = [np.where(leave > 0, np.maximum(enter, 0.0), np.inf) for enter, leave in spans]
-        gaps += np.min(nearest, axis=0)
-    if not np.isfinite(gaps).any():
-        return None
-    return min(ALONG * int((gaps <= gaps.min() + FACING).sum()), pad_length)
-
-
-def too_short(length: float | None, pad_length: float) -> bool:
-    """Whether pads that face each other over so little hold what is round at an edge."""
-    return length is not None and length < min(LEAST_FACING[0], LEAST_FACING[1] * pad_length)
 
 
 def blocked(solids: list[Array], origins: Array, directions: Array) -> Array:

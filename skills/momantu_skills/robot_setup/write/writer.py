@@ -14,7 +14,6 @@ from momantu_skills.robot_setup.find.matrix import Why
 from momantu_skills.robot_setup.find.named import TIPS
 from momantu_skills.robot_setup.find.proposal import Proposal
 from momantu_skills.robot_setup.find.reach import HEIGHTS, Reach
-from momantu_skills.robot_setup.urdf.rays import too_short
 from momantu_skills.robot_setup.write.arm_writer import (
     actuator_lines,
     end_effector_lines,
@@ -88,12 +87,6 @@ def without(proposal: Proposal) -> tuple[str, ...]:
 def _weak_holds(proposal: Proposal) -> Iterator[str]:
     """Why the hand may lose what it holds."""
     grasp, carry = proposal.grasp, proposal.poses.get("carry")
-    if grasp is not None and too_short(grasp.facing, grasp.pad_length):
-        yield (
-            f"no even grip: half open, the fingers face each other over "
-            f"{1000 * (grasp.facing or 0):.0f} mm of {1000 * grasp.pad_length:.0f}. What is round "
-            "is held at an edge and turns in the hand, and trees that carry it may fail"
-        )
     if grasp is not None and carry is not None and TIPS in carry.notes:
         yield f"no level `carry`: {TIPS}, and trees that carry may fail"
 
