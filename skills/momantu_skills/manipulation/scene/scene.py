@@ -60,6 +60,8 @@ DISC = 0.25
 """Radius of the assumed support below an object of which too little is visible, m."""
 FLOOR_BAND = 0.06
 """Height above the floor below which points belong to the floor, m."""
+TURNED = 0.25
+"""How far what is held may have turned in the hand, rad: a wide bowl hangs down from its rim."""
 SEEN_THROUGH = 0.03
 """An old cell is deleted if the picture shows something this much behind it, m."""
 
@@ -234,7 +236,10 @@ class Scene:
         own = self._mask.covers(points, poses)
         if held is not None:
             tip = poses[self.model.description.hand.frame]
-            mask = LinkMask({"held": self.held_corners(held)}, self.config.robot_padding)
+            corners = self.held_corners(held)
+            across = np.linalg.norm(corners - self.model.tip_from_grasp.position, axis=1).max()
+            padding = max(self.config.robot_padding, TURNED * float(across))
+            mask = LinkMask({"held": corners}, padding)
             own |= mask.covers(points, {"held": tip})
         return own
 
