@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.config import HandConfig, PlanningConfig
+from momantu_skills.manipulation.config import HandConfig
 from momantu_skills.manipulation.hand.freshness import check_fresh
 from momantu_skills.manipulation.hand.gripper import bump, move_gripper
 from momantu_skills.manipulation.hand.verification import standing, stands_there
@@ -17,7 +17,6 @@ from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle, body_pairs
 from momantu_skills.manipulation.motion.following import brake, expected, follow
 from momantu_skills.manipulation.motion.planner import escape
-from momantu_skills.manipulation.motion.timing import timed
 
 from momantu_bt.failure import Failure
 from momantu_bt.frames import FrameBuffer
@@ -41,16 +40,6 @@ def run(generator: Any, robot: Any, each: Callable[[], None] | None = None) -> A
         robot.advance(0.05)
         if each is not None:
             each()
-
-
-@pytest.fixture
-def swing(tabletop: type[Tabletop], model: ArmModel) -> Swing:
-    """Fetch, and a trajectory of a second or two that turns its shoulder."""
-    robot = tabletop(pose="carry")
-    q = model.joints(robot.state())
-    end = q.copy()
-    end[1] += 0.8
-    return robot, timed(model.group, np.array([q, end]), PlanningConfig())
 
 
 def test_it_arrives_and_rests(swing: Swing) -> None:

@@ -16,9 +16,8 @@ from momantu_skills.manipulation.motion.strain import LASTING, LEAST, SHARE, Pus
 from momantu_skills.manipulation.motion.timing import timed
 
 from momantu_bt.failure import Failure
-from tests.skills.manipulation.test_motion import run, swing
+from tests.skills.manipulation.test_motion import run
 
-__all__ = ["swing"]
 LIMITS = np.array([100.0, 60.0, np.inf, 0.0])
 
 

@@ -86,7 +86,7 @@ class Vehicle:
         self.config, self.limits = config, description.base
         self.glides = description.base.sideways > 0.0
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
-        self._remembers = shared is not None
+        self._earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
@@ -153,17 +153,16 @@ class Vehicle:
         rays = Rays.from_scan(scan, self._base_from_laser)
         self._hits = rays.points()
         self._body.look(self._robot.state(), self._hits)
-        if not self._remembers:
-            self._remember(pose)
+        if len(self._earlier):
+            self._lay_earlier(pose)
         self.costmap.see_laser(pose, rays)
         if depth and self._look_due(pose):
             self._see_depth(pose, float(self._base_from_laser.position[2]))
         self.costmap.refresh(pose)
 
-    def _remember(self, pose: Pose2D) -> None:
+    def _lay_earlier(self, pose: Pose2D) -> None:
         """Mark the low things that earlier pictures showed; none lies where the base stands."""
-        self._remembers = True
-        there = self._scene.low_things
+        there, self._earlier = self._earlier, np.zeros((0, 2))
         own = pose.inverse().transform().apply(np.column_stack([there, np.zeros(len(there))]))
         off = np.linalg.norm(own[:, None, :2] - self.base_discs[:, :2], axis=2)
         under = (off < self.base_discs[:, 2] + UNDER).any(axis=1)

@@ -10,13 +10,15 @@ import numpy as np
 
 from momantu_bt.detector import ObjectDetector, View
 from momantu_bt.geometry import Array
+from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_skills.perception.learned.detector import LearnedDetector
 from momantu_skills.perception.objects.geometric import GeometricDetector
 from momantu_skills.perception.objects.matching import KNOWN
 
-SAME = 0.035
-"""Distance between the middles of what both see up to which it is one thing, m."""
+with lazily():
+    from momantu_skills.perception.learned import fusing
+
 ALIKE, ALIKE_LEAST = 0.2, 0.01
 """Sizes agree up to this share of them, or up to so many metres."""
 ALONE = 0.75
@@ -75,7 +77,7 @@ def _merged(measured: list[DetectedObject], learned: list[DetectedObject]) -> li
     found = []
     left = list(measured)
     for thing in learned:
-        near = [other for other in left if _apart(thing, other) < SAME]
+        near = [other for other in left if _apart(thing, other) < fusing.SAME]
         if near:
             other = min(near, key=lambda each: _apart(thing, each))
             left.remove(other)

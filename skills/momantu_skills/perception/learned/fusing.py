@@ -11,7 +11,7 @@ from momantu_bt.geometry import Transform
 from momantu_skills.perception.learned.solids import Solid
 
 SAME = 0.035
-"""Distance between the middles of a thing in two views, m: half of the least width of two."""
+"""Distance up to which two middles are one thing's, m: half of the least width of two things."""
 AGREEING = 0.2
 """Relative difference of sizes up to which they are averaged."""
 

@@ -29,7 +29,7 @@ def train(
     start: Annotated[
         Path | None, typer.Option(help="Weights to start from instead of random ones.")
     ] = None,
-    device: Annotated[str, typer.Option(help="cpu or cuda; the result is the same kind.")] = "cpu",
+    device: Annotated[str, typer.Option(help="What trains: cpu, or cuda for a GPU.")] = "cpu",
 ) -> ExitCode:
     """Train the network of the detector `learned` on labelled pictures.
 

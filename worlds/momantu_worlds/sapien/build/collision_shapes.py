@@ -9,6 +9,7 @@ is made of boxes where that is possible.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ def collision_shapes(part: Part, material: Any, *, static: bool) -> list[Any]:
     static: things may stand on the part, and it never moves.
     """
     geometry = part.geometry
+    if isinstance(geometry, Box):
+        return [_box(part.body_from_part, geometry.size, material)]
     if static and isinstance(geometry, Cylinder) and geometry.height < geometry.radius:
         return [_box(part.body_from_part @ turn, size, material) for turn, size in _disc(geometry)]
     if static and isinstance(geometry, Hull) and (found := box_of(geometry.vertices)) is not None:
@@ -75,7 +78,8 @@ def box_of(vertices: Array) -> tuple[Transform, Array] | None:
     return Transform.from_rotation(rotation, middle), size
 
 
-def _box(body_from_box: Transform, size: Array, material: Any) -> Any:
+def _box(body_from_box: Transform, size: Iterable[float], material: Any) -> Any:
+    """A box with edges (3,) in m."""
     half = [float(edge) / 2 for edge in size]
     shape = sapien.physx.PhysxCollisionShapeBox(half_size=half, material=material)
     shape.local_pose = pose_of(body_from_box)
@@ -83,10 +87,8 @@ def _box(body_from_box: Transform, size: Array, material: Any) -> Any:
 
 
 def _shape(part: Part, material: Any) -> Any:
+    """SAPIEN's own shape for a part that is no box, not placed yet."""
     geometry, physx = part.geometry, sapien.physx
-    if isinstance(geometry, Box):
-        half = [edge / 2 for edge in geometry.size]
-        return physx.PhysxCollisionShapeBox(half_size=half, material=material)
     if isinstance(geometry, Cylinder):
         return physx.PhysxCollisionShapeCylinder(
             radius=geometry.radius, half_length=geometry.height / 2, material=material
