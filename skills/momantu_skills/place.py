@@ -128,7 +128,10 @@ class Place(Skill):
             )
         if grip is evidence.Grip.UNKNOWN:
             return Failure(
-                "NOTHING_HELD", f"no pick has reported anything in the hand, and {said}", **data
+                "NOTHING_HELD",
+                f"no pick has reported anything in the hand, and {said}; pick the object, or let "
+                "examine_hand find out what the hand holds",
+                **data,
             )
         return Failure(
             "HELD_UNKNOWN",
