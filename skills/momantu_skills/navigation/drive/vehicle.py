@@ -18,6 +18,7 @@ from momantu_bt.service import HeldObject, Localization
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
+from momantu_skills.navigation.drive.overlooked import Overlooked
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
@@ -106,6 +107,7 @@ class Vehicle:
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
         self._hits = np.zeros((0, 2))
+        self._overlooked = Overlooked()
         self.blind = 0.0
         self.blocked_for = 0.0
         self.blocked_total = 0.0
@@ -201,6 +203,7 @@ class Vehicle:
         obstacles, floor = obstacles_and_floor(
             image, self._frames, self._robot.description, state, self._scene, self.config
         )
+        self._overlooked.see(self.odom_from_base(), obstacles, floor, self._hits)
         there = np.column_stack([_moved(pose, obstacles), obstacles[:, 2]])
         self.costmap.see_depth(there, _moved(pose, floor), laser - LASER_DOUBT)
         self.costmap.looked = pose
@@ -227,11 +230,13 @@ class Vehicle:
     def allowed(self, linear: float, angular: float, lateral: float = 0.0) -> float:
         """Return the share of a command, as of `drive`, at which nothing is met; 0: none.
 
-        The base must not meet a hit of the newest scan, arm and load nothing that stands at their
-        height.
+        The base must not meet a hit of the newest scan, nor what pictures showed beside it; arm and
+        load nothing that stands at their height.
         """
         command, speed = (linear, angular, lateral), self.speed()
-        share = guard.safe_share(command, speed, self.limits, self.base_discs, self._hits)
+        overlooked = self._overlooked.near(self.odom_from_base(), guard.NEAR)
+        hits = np.vstack([self._hits, overlooked])
+        share = guard.safe_share(command, speed, self.limits, self.base_discs, hits)
         return min(share, self._body.share(command, speed)) if share > 0.0 else share
 
     def drive(self, linear: float, angular: float, phase: str, lateral: float = 0.0) -> Run:
