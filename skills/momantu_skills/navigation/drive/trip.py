@@ -21,7 +21,11 @@ from momantu_skills.navigation.plan.goals import Stand
 Trip = Generator[str | Compute, Any, None]
 
 SURE_WITHIN = 2.5
-"""Time for localization to become certain at the start, s: its scans at rest take 1.5 s."""
+"""Time for localization to become certain at rest, s: its scans at rest take 1.5 s."""
+LOST = 1.0
+"""Time for which a base that drives may be unsure where it is, s; then it stops."""
+DOUBTS = 4
+"""Stops to become sure where the base is, in one attempt."""
 RECOVERABLE = ("PATH_BLOCKED", "NO_PROGRESS", "GOAL_BLOCKED", "NO_PATH")
 LOCAL = 1.5
 """Distance from the goal below which the base uses manoeuvres instead of a planned path, m."""
@@ -65,7 +69,7 @@ def travel(
     attempts = vehicle.config.attempts if recovery else 1
     for attempt in range(attempts):
         try:
-            yield from _go(vehicle, mppi, to)
+            yield from _surely(vehicle, lambda: _go(vehicle, mppi, to), quality)
             return
         except Failure as failure:
             if failure.code not in RECOVERABLE or attempt == attempts - 1:
@@ -89,6 +93,36 @@ def be_sure(vehicle: Vehicle, quality: float = QUALITY) -> Trip:
                 quality=vehicle.localization.quality,
             )
         yield from vehicle.wait(vehicle.config.period, "localize")
+
+
+def _surely(vehicle: Vehicle, go: Callable[[], Trip], quality: float) -> Trip:
+    """Drive while localization is certain; else stop, look at rest, and begin to drive again."""
+    for _ in range(DOUBTS):
+        if (yield from _while_sure(vehicle, go(), quality)):
+            return
+        yield from vehicle.stop("localize")
+        yield from be_sure(vehicle, quality)
+    raise Failure(
+        "NOT_LOCALIZED", f"the base stopped {DOUBTS} times because it was not sure where it was"
+    )
+
+
+def _while_sure(
+    vehicle: Vehicle, drive: Trip, quality: float
+) -> Generator[str | Compute, Any, bool]:
+    """Drive to the end, True, or until localization has not been certain for `LOST` s, False."""
+    answer, sure_at = None, vehicle.now()
+    while True:
+        try:
+            step = drive.send(answer)
+        except StopIteration:
+            return True
+        if is_localized(vehicle.localization, quality):
+            sure_at = vehicle.now()
+        if vehicle.now() - sure_at > LOST:
+            drive.close()
+            return False
+        answer = yield step
 
 
 def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
