@@ -1,6 +1,7 @@
 """Whole trips: they arrive, keep their frame, recover as often as allowed, and then give up."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -179,3 +180,52 @@ def test_another_failure_is_not_recovered_from(obedient: MakeObedient, run_move:
 
     assert _code(base, run_move, Destination(stands, TOLERANCE), recovery=True) == "BAD_GOAL"
     assert base.now() < 1.0
+
+
+def _doubts(base: Any, begins: float, ends: Callable[[Any], bool]) -> Callable[[], None]:
+    """Be unsure from `begins` m on, until `ends`."""
+    doubting = False
+
+    def follow() -> None:
+        nonlocal doubting
+        begun = base.at.x > begins and not doubting
+        if begun:
+            doubting, base.localization = True, Belief(quality=0.5)
+        elif doubting and ends(base):
+            base.localization = Belief()
+
+    return follow
+
+
+def test_a_base_that_gets_lost_stops_and_says_so(obedient: MakeObedient, run_move: RunMove) -> None:
+    base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
+    follow = _doubts(base, 0.5, lambda base: False)
+    with pytest.raises(Failure, match="anywhere within") as caught:
+        run_move(travel(base, _mppi(base), _to(Pose2D(7.0, 3.0, 0.0)), recovery=True), follow)
+    assert caught.value.code == "NOT_LOCALIZED"
+    assert base.stands()
+    assert base.at.x < 0.5 + trip.LOST * base.limits.linear + 1.0
+
+
+@pytest.mark.parametrize("at_rest", [True, False])
+def test_a_doubt_that_passes_does_not_end_the_trip(
+    obedient: MakeObedient, run_move: RunMove, at_rest: bool
+) -> None:
+    base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
+    goal = Pose2D(7.0, 3.0, 0.0)
+    follow = _doubts(base, 0.5, lambda base: base.stands() if at_rest else base.at.x > 0.8)
+    run_move(travel(base, _mppi(base), _to(goal), recovery=False), follow)
+    assert base.pose().distance_to(goal) <= TOLERANCE[0]
+    assert ("localize" in base.phases) == at_rest
+
+
+def test_who_doubts_again_and_again_gives_up(obedient: MakeObedient, run_move: RunMove) -> None:
+    base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
+
+    def follow() -> None:
+        base.localization = Belief() if base.stands() else Belief(sigma=0.4)
+
+    with pytest.raises(Failure, match=f"stopped {trip.DOUBTS} times") as caught:
+        run_move(travel(base, _mppi(base), _to(Pose2D(7.0, 3.0, 0.0)), recovery=True), follow)
+    assert caught.value.code == "NOT_LOCALIZED"
+    assert base.stands()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from momantu_bt.geometry import Array, Pose2D
 
@@ -33,15 +34,14 @@ class Overlooked:
         obstacles: points (n, 3); floor: points (m, 2) of free floor; hits: points (k, 2) of the
         newest scan; all in the base frame, m.
         """
-        own = _gathered(obstacles[:, :2])
-        if len(own) and len(hits):
-            off = np.linalg.norm(own[:, None] - hits, axis=2).min(axis=1)
-            own = own[off > EXPLAINED]
-        fresh = odom_from_base.transform().apply(_flat(own))[:, :2]
-        bare = odom_from_base.transform().apply(_flat(_gathered(floor)))[:, :2]
+        points = obstacles[:, :2]
+        if len(points) and len(hits):
+            off, _ = cKDTree(hits).query(points, distance_upper_bound=EXPLAINED)
+            points = points[off > EXPLAINED]
+        to_odom = odom_from_base.transform()
+        fresh, bare = (_gathered(to_odom.apply(_flat(own))[:, :2]) for own in (points, floor))
         seen = np.concatenate([_keys(fresh), _keys(bare)])
-        before = self._there[~np.isin(_keys(self._there), seen)]
-        there = np.vstack([before, fresh])
+        there = np.vstack([self._there[~np.isin(_keys(self._there), seen)], fresh])
         far = np.hypot(*(there - (odom_from_base.x, odom_from_base.y)).T)
         self._there = there[far < KEPT]
 
