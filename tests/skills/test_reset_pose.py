@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.config import PlanningConfig
+from momantu_skills.manipulation.motion import planner
+from momantu_skills.manipulation.scene.scene import Scene
 from momantu_skills.reset_pose import ResetPose
 
 from momantu_bt.claim import JointsAt
@@ -153,6 +156,24 @@ def test_a_start_within_the_margin_is_left(tabletop: type[Tabletop], scene_of: S
     hand = robot.odom_from_hand.position
     top = hand[2] - 0.075
     robot.readings["head_camera"] = Painter([Block((0.2, 0.3, top), (hand[0], hand[1], top / 2))])
+    result = reset(robot, scene_of(robot), "home")
+    assert result.status == "SUCCESS", result.explain()
+
+
+def test_a_start_that_only_the_wide_margin_encloses_is_left_with_the_narrow_one(
+    tabletop: type[Tabletop], scene_of: SceneOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wide, original = PlanningConfig().margins[0], Scene.world
+
+    def world(self: Scene, state: Any, held: Any, margin: float, **more: Any) -> Any:
+        made = original(self, state, held, margin, **more)
+        if margin == wide:
+            monkeypatch.setattr(made, "free", lambda *_: False)
+        return made
+
+    monkeypatch.setattr(Scene, "world", world)
+    monkeypatch.setattr(planner, "escape", lambda *_: None)
+    robot = tabletop(can=None, pose="carry")
     result = reset(robot, scene_of(robot), "home")
     assert result.status == "SUCCESS", result.explain()
 

@@ -176,16 +176,21 @@ class Arm:
         """The same in given worlds: with a clearance, m, and for leaving contacts."""
         start = self.joints
         first: list[JointTrajectory] = []
+        enclosed: Failure | None = None
         for margin in self.planning.margins:
-            transit = world(margin)
+            transit, enclosed = world(margin), None
             if not transit.free(start) and not first:
-                path = self._escape(start, transit, bare())
+                try:
+                    path = self._escape(start, transit, bare())
+                except Failure as failure:
+                    enclosed = failure
+                    continue
                 first.append(self.trajectory(path, self.hand.approach_speed, careful=careful))
                 start = path[-1]
             found = self._path(transit, held, start, goals)
             if found is not None:
                 return [*first, *self._checked(found, world(margin / 2), careful)]
-        raise self._no_plan(transit, goals)
+        raise enclosed or self._no_plan(transit, goals)
 
     def _path(
         self,
