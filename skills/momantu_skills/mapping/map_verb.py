@@ -13,7 +13,7 @@ from momantu_bt.lazy import lazily
 
 with lazily():
     from momantu_skills.mapping import building, results
-    from momantu_skills.mapping.logs import carmen
+    from momantu_skills.mapping.logs import reading
 
 if TYPE_CHECKING:
     from momantu_skills.mapping.building import Built
@@ -23,11 +23,14 @@ STEP = 0.05
 
 
 def make_map(
-    log: Annotated[Path, typer.Option("--log", help="A log of CARMEN, plain or packed with gzip.")],
+    log: Annotated[Path, typer.Option("--log", help="A log of CARMEN, a bag of ROS, or a record.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="A new folder for the map.")],
     resolution: Annotated[
         float, typer.Option(min=0.01, max=0.5, help="Edge of the map's cells, m.")
     ] = 0.05,
+    scan: Annotated[
+        str | None, typer.Option(help="The laser's topic, in a bag or record with several.")
+    ] = None,
 ) -> ExitCode:
     """Make a floor plan of a recorded log.
 
@@ -41,9 +44,11 @@ def make_map(
     Examples:
       momantu-bt map --log office.log -o maps/office
       momantu-bt map --log office.log.gz -o maps/office --resolution 0.03
+      momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
+      momantu-bt map --log runs/3 -o maps/flat
     """
     results.check_folder(out)
-    recorded = carmen.read_carmen(log)
+    recorded = reading.read_log(log, scan)
     for note in recorded.notes:
         typer.echo(f"note: {log}: {note}", err=True)
     if len(recorded.scans) < building.FEWEST:

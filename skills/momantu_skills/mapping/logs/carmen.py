@@ -6,7 +6,6 @@ The columns are those of CARMEN's logger, http://carmen.sourceforge.net/logger_p
 from __future__ import annotations
 
 import gzip
-import itertools
 import math
 import zlib
 from collections.abc import Iterator, Sequence
@@ -14,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
+from momantu_skills.mapping.logs.cleaning import alike, backwards, no_return
 from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
 from momantu_skills.navigation.map.sensing import Rays
 
@@ -29,10 +28,6 @@ _NEAREST = 0.02
 """Shorter ranges are the sensor's own housing, m."""
 _SAME_MOUNT = 0.03
 """How far the laser's place on the base may vary in a raw log, m or rad."""
-_AT_MOST = 0.005
-"""Share of beams at the greatest range from which on it means that nothing was hit."""
-_JITTER = 2.0
-"""How far back a stamp may lie behind the one before, s."""
 _HALF_TURN = 180.0
 
 
@@ -66,22 +61,18 @@ def read_carmen(path: Path) -> Log:
     if len(broken) > max(1, _MOST_BROKEN * lines):
         line, why = broken[0]
         raise LogError.at(path, line, why, f"{len(broken)} of {lines} lines are broken")
-    back = _backwards(path, readings)
     notes = []
     if broken:
         line, why = broken[0]
         notes.append(f"left out {len(broken)} broken lines, the first is line {line}: {why}")
-    if back:
-        notes.append(f"{back} scans have an earlier stamp than the one before")
+    notes += backwards(
+        [reading.stamp for reading in readings],
+        lambda index, said, cure: LogError.at(path, readings[index].line, said, cure),
+    )
     whole = [reading for reading in readings if reading.odom is not None]
     whole = whole or list(_with_odometry(path, readings, odometry))
-    counts = [reading.ranges.size for reading in whole]
-    usual = max(counts, key=counts.count)
-    alike = [reading for reading in whole if reading.ranges.size == usual]
-    if len(alike) < len(whole):
-        left_out = len(whole) - len(alike)
-        notes.append(f"left out {left_out} scans that have not {usual} beams as the others")
-    return Log(tuple(_scans(alike)), tuple(notes))
+    scans, odd = alike(whole, lambda reading: reading.ranges.size)
+    return Log(tuple(_scans(scans)), (*notes, *odd))
 
 
 def _lines(
@@ -214,25 +205,9 @@ def _rawlaser(line: int, words: Sequence[str]) -> _Reading:
 _READERS = {"FLASER": _flaser, "ROBOTLASER1": _robotlaser, "RAWLASER1": _rawlaser}
 
 
-def _backwards(path: Path, readings: Sequence[_Reading]) -> int:
-    """How many scans have an earlier stamp than the one before, as loggers on two machines do.
-
-    Raises:
-        LogError: the clock jumps back.
-    """
-    count = 0
-    for before, after in itertools.pairwise(readings):
-        if after.stamp < before.stamp - _JITTER:
-            message = f"the clock runs backwards, from {before.stamp} to {after.stamp} s"
-            cure = "two logs in one file are two maps: split the file here"
-            raise LogError.at(path, after.line, message, cure)
-        count += after.stamp < before.stamp
-    return count
-
-
 def _scans(whole: Sequence[_Reading]) -> Iterator[LoggedScan]:
     """The scans of lines with odometry, all with as many beams."""
-    nothing = _no_return(np.concatenate([reading.ranges for reading in whole]))
+    nothing = no_return(np.concatenate([reading.ranges for reading in whole]))
     mount = _mount(whole)
     for reading in whole:
         assert reading.odom is not None
@@ -246,16 +221,6 @@ def _scans(whole: Sequence[_Reading]) -> Iterator[LoggedScan]:
             hit,
         )
         yield LoggedScan(reading.stamp, reading.odom, rays)
-
-
-def _no_return(ranges: NDArray[np.float64]) -> float:
-    """The range from which on a beam has hit nothing: the greatest one, if it is frequent."""
-    finite = ranges[np.isfinite(ranges)]
-    if not finite.size:
-        return math.inf
-    most = float(finite.max())
-    often = float((finite >= 0.99 * most).mean()) >= _AT_MOST
-    return 0.99 * most if often else math.inf
 
 
 def _mount(readings: Sequence[_Reading]) -> Pose2D:
