@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import getattr_static
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -86,6 +86,16 @@ class Localization(Protocol):
 
     def spread(self) -> None:
         """Restart with guesses spread over all of the map's free floor."""
+        ...
+
+
+@runtime_checkable
+class SeveralPlaces(Protocol):
+    """A localization that knows of several places where the robot may be."""
+
+    @property
+    def places(self) -> tuple[Pose2D, ...]:
+        """The places while it searches the whole map, likeliest first; else none."""
         ...
 
 

@@ -41,7 +41,7 @@ from tests.skills.scenery.table import SceneOf, Tabletop
 
 @pytest.fixture
 def flat(tmp_path: Path) -> Flat:
-    """`flat(truth, believed=…, hidden=…, moved=…)`: two rooms, a desk and a robot in them."""
+    """`flat(truth, believed=…, hidden=…, rooms=…)`: two rooms, a desk and a robot in them."""
 
     def build(
         truth: Pose2D = START,
@@ -53,11 +53,13 @@ def flat(tmp_path: Path) -> Flat:
         seed: int = 0,
         drift: float = 0.02,
         description: RobotDescription | None = None,
+        rooms: Sequence[Box] = ROOMS,
+        span: Box = (-4.5, -3.5, 6.5, 3.5),
     ) -> ScriptedWorld:
         robot = FlatRobot(truth, seed, drift, description)
-        robot.boxes = [*ROOMS, *known, desk, *hidden]
+        robot.boxes = [*rooms, *known, desk, *hidden]
         site = scripted_site(
-            map_file=write_map(tmp_path, [*ROOMS, *known, DESK], (-4.5, -3.5, 6.5, 3.5)),
+            map_file=write_map(tmp_path, [*rooms, *known, DESK], span),
             start=believed or truth,
             places={"left": Pose2D(-2.0, 1.5, 0.0), "right": Pose2D(2.2, -2.0, -1.0)},
             surfaces={

@@ -14,11 +14,28 @@ from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Pose2D
 from momantu_bt.testing import ScriptedRobot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
-from tests.skills.scenery.flat import Flat, FlatSceneOf
+from tests.skills.scenery.flat import Box, Flat, FlatSceneOf
 from tests.skills.scenery.table import SceneOf
 
 Found = tuple[SkillResult, LocalizationService]
 Relocate = Callable[..., Found]
+
+
+TWINS: tuple[Box, ...] = (
+    *((x, 0.0, x + 0.1, 3.0) for x in (0.0, 3.1, 6.2)),
+    (0.0, -0.1, 6.3, 0.0),
+    *((x, 2.9, x + 1.0, 3.0) for x in (0.1, 2.1, 3.2, 5.2)),
+    (0.0, 4.8, 9.0, 4.9),
+    (0.0, 2.9, 0.1, 4.9),
+    (9.0, 2.9, 9.1, 4.9),
+    (6.2, 2.9, 9.0, 3.0),
+    *((x + 0.5, 0.0, x + 1.1, 0.6) for x in (0.1, 3.2)),
+)
+"""Two equal rooms of 3 m x 3 m, each with a box and a doorway to a corridor whose ends differ."""
+CLOSED = (*TWINS, (1.0, 2.9, 2.2, 3.0), (4.1, 2.9, 5.3, 3.0))
+"""The same with walls in the place of the doorways."""
+AROUND: Box = (-0.5, -0.5, 9.5, 5.4)
+OUTSIDE: Box = (30.0, 30.0, 31.0, 31.0)
 
 
 @pytest.fixture
@@ -71,6 +88,33 @@ def test_everywhere_begins_with_the_whole_map(flat: Flat, relocalize: Relocate) 
     assert result.status == "SUCCESS", result.explain()
     assert service.map_from_base.distance_to(result.robot.truth) < 0.05  # type: ignore[attr-defined]
     assert "turn" in result.phases
+
+
+@pytest.mark.parametrize("room", [0.0, 3.1])
+def test_two_equal_rooms_are_told_apart_by_driving(
+    flat: Flat, relocalize: Relocate, room: float
+) -> None:
+    start = Pose2D(1.9 + room, 1.4, 0.6)
+    world = flat(start, rooms=TWINS, span=AROUND, desk=OUTSIDE)
+    result, service = relocalize(world, everywhere=True)
+    assert result.status == "SUCCESS", result.explain()
+    assert service.map_from_base.distance_to(world.robot.truth) < 0.1
+    assert world.robot.truth.distance_to(start) > 0.5
+    assert world.robot.nearest > 0.0
+    assert result.duration < 32.0
+
+
+def test_two_equal_rooms_without_a_way_out_are_not_guessed(
+    flat: Flat, relocalize: Relocate
+) -> None:
+    world = flat(Pose2D(1.9, 1.4, 0.6), rooms=CLOSED, span=AROUND, desk=OUTSIDE)
+    result, service = relocalize(world, everywhere=True)
+    assert result.code == "NOT_LOCALIZED", result.explain()
+    assert result.failure is not None
+    assert "places on the map look alike" in result.failure.message
+    assert len(result.failure.data["places"]) >= 2
+    assert not is_localized(service)
+    assert world.robot.nearest > 0.0
 
 
 def test_not_localized_where_the_map_is_of_another_place(flat: Flat, relocalize: Relocate) -> None:

@@ -80,13 +80,17 @@ def test_a_rough_start_is_mended(truth: Pose2D, dx: float, dy: float, turn: floa
 
 @settings(max_examples=4)
 @given(POSES)
-def test_from_nowhere_it_is_found(truth: Pose2D) -> None:
+def test_from_nowhere_it_is_found_by_turning(truth: Pose2D) -> None:
     localizer = Localizer(ROOM, LocalizationConfig(), np.random.default_rng(2))
     localizer.spread()
     assert sigmas(localizer.covariance)[0] > 1.0
-    for k in range(12):
-        localizer.jitter(0.006)
+    turn = Pose2D(0.0, 0.0, 0.5)
+    for k in range(16):
         localizer.observe(_seen_from(truth, seed=k))
+        assert k > 2 or sigmas(localizer.covariance)[0] > 0.2
+        truth = truth @ turn
+        localizer.move(turn)
+    localizer.observe(_seen_from(truth, seed=20))
     assert _error(localizer, truth)[0] < 0.05
     assert sigmas(localizer.covariance)[0] < 0.1
 

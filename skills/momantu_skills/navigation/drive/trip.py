@@ -76,6 +76,7 @@ def travel(
                 yield from vehicle.stop("give up")
                 raise
             yield from _recover(vehicle, attempt)
+            yield from be_sure(vehicle, quality)  # what blocks a lost base may stand elsewhere
 
 
 def be_sure(vehicle: Vehicle, quality: float = QUALITY) -> Trip:

@@ -64,7 +64,7 @@ def _near(poses: Array, center: Pose2D) -> NDArray[np.bool_]:
 def _heaviest(poses: Array, weights: Array) -> Pose2D:
     cells = np.floor(poses / CLUSTER_RADIUS).astype(np.int64)
     cells[:, 2] = np.floor((poses[:, 2] % (2 * math.pi)) / CLUSTER_RADIUS)
-    _, label = np.unique(cells, axis=0, return_inverse=True)
-    label = label.reshape(-1)
+    cells -= cells.min(axis=0)
+    label = np.ravel_multi_index(cells.T, cells.max(axis=0) + 1)
     best = int(np.argmax(np.bincount(label, weights=weights)))
     return mean_pose(poses[label == best], weights[label == best])

@@ -34,17 +34,24 @@ def scan_fit(grid: GridMap, field: Field, pose: Pose2D, rays: Rays) -> float:
     chosen = np.zeros(rays.ranges.size, dtype=np.bool_)
     chosen[step // 2 :: step] = True
     chosen &= rays.hit
-    hits, early, through = _count(
+    kept = Rays(rays.origin, rays.directions[chosen], rays.ranges[chosen], chosen[chosen])
+    hits, early, through = beam_counts(grid, field, pose, kept)
+    weight = hits + through + SHORT_COUNTS * early
+    return float(hits / weight) if weight > 0 else 0.0
+
+
+def beam_counts(grid: GridMap, field: Field, pose: Pose2D, rays: Rays) -> tuple[int, int, int]:
+    """How many beams, all of them hits, are explained, end early, and contradict the pose."""
+    counts: tuple[int, int, int] = _count(
         grid.cells,
         field,
         np.array([*grid.origin, grid.resolution]),
         np.array([pose.x, pose.y, pose.yaw]),
         rays.origin,
-        rays.directions[chosen],
-        rays.ranges[chosen],
+        rays.directions,
+        rays.ranges,
     )
-    weight = hits + through + SHORT_COUNTS * early
-    return float(hits / weight) if weight > 0 else 0.0
+    return counts
 
 
 @numba.njit(cache=True)

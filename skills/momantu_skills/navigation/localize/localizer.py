@@ -11,6 +11,7 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.config import LocalizationConfig
 from momantu_skills.navigation.localize.belief import covariance, main_cluster
 from momantu_skills.navigation.localize.fit import scan_fit
+from momantu_skills.navigation.localize.hypotheses import Hypothesis, PlaceSearch
 from momantu_skills.navigation.localize.particle_filter import (
     kld_resample,
     likelihood_field,
@@ -20,25 +21,24 @@ from momantu_skills.navigation.map.fields import surface_distance
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
-COARSE = 3.0
-"""After a global reset, `hit_sigma` is multiplied by this for the first scans, because the sampled
-poses lie far apart."""
+FOUND = (0.1, 0.06)
+"""Standard deviations around a place that was found on the whole map, m and rad."""
 
 
 class Localizer:
     """Particles in the map, moved by odometry and weighted by scans.
 
     estimate: mean of the main cluster. covariance: (3, 3) of all particles, m2, m rad, rad2.
-    quality: 0..1, fit of the newest scan at the estimate.
+    quality: 0..1, fit of the newest scan at the estimate. After `spread` there are no particles but
+    the places of a `PlaceSearch`, until one of them is left.
     """
 
     def __init__(
         self, grid: GridMap, config: LocalizationConfig, random: np.random.Generator
     ) -> None:
         self._config, self._random = config, random
+        self._search: PlaceSearch | None = None
         self.use_map(grid)
-        self._search = False
-        self._widening = 1.0
         self.reset(Pose2D(0.0, 0.0, 0.0), 0.0, 0.0)
 
     def use_map(self, grid: GridMap) -> None:
@@ -52,23 +52,33 @@ class Localizer:
         self._free = grid.centers(grid.cells == FREE)
         if not len(self._free):
             raise ValueError("the map has no free cell, so a robot cannot be anywhere on it")
-        self._weighed_with = 0.0
-        self._likelihood = self._field
+        sigma, share = self._config.hit_sigma, self._config.random_share
+        self._likelihood = likelihood_field(self._field, sigma, share)
+        if self._search is not None:
+            self.spread()
 
     def reset(self, pose: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
         """Restart around a pose; standard deviations in m (each axis) and rad."""
         spread = np.array([sigma_position, sigma_position, sigma_yaw])
         count = max(2_000, self._config.particles[0])
         noise = self._random.standard_normal((count, 3)) * spread
+        self._search = None
         self._start(np.array([pose.x, pose.y, pose.yaw]) + noise, pose)
-        self._search = False
-        self._widening = 1.0
 
     def spread(self) -> None:
         """Restart everywhere on the free floor; the next scan is compared with every pose."""
         self._start(self._anywhere(self._config.particles[1]), self.estimate)
-        self._search = True
-        self._widening = COARSE
+        self._search = PlaceSearch(self._grid, self._field, self._config)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot is being sought on the whole map."""
+        return self._search is not None
+
+    @property
+    def places(self) -> tuple[Hypothesis, ...]:
+        """Where the robot may be, likeliest first; empty while particles are used."""
+        return () if self._search is None else self._search.places
 
     def _start(self, poses: Array, guess: Pose2D) -> None:
         self._poses = poses
@@ -91,6 +101,10 @@ class Localizer:
 
         The noise grows with the distance and the turn (the sampled odometry model, in one step).
         """
+        if self._search is not None:
+            self._search.move(delta)
+            self.estimate = self.estimate @ delta
+            return
         config, count = self._config, len(self._poses)
         way, turn = math.hypot(delta.x, delta.y), abs(delta.yaw)
         along = config.translation_noise * way + 0.01 * turn
@@ -113,22 +127,27 @@ class Localizer:
         if not len(points):
             self.quality = 0.0
             return
-        if self._search:
-            self._search = False
-            self._poses = self._every_pose()
+        if self._search is not None:
+            self._look_for(rays, self._search)
+            return
         logs = self._logs(points)
         weights = np.exp(self._config.trust * (logs - logs.max()))
         self._settle(weights, self.estimate)
         self.quality = scan_fit(self._grid, self._field, self.estimate, rays)
         self._resample(weights / weights.sum(), self._injected(logs, len(points)))
-        self._widening = max(1.0, self._widening * 0.7)
+
+    def _look_for(self, rays: Rays, search: PlaceSearch) -> None:
+        """Find the places that fit; go on with particles around the last one that is left."""
+        search.see(rays)
+        if search.found is not None:
+            self.reset(search.found, *FOUND)
+        elif search.places:
+            self.estimate = search.places[0].pose
+            self.covariance = search.covariance()
+        self.quality = scan_fit(self._grid, self._field, self.estimate, rays)
 
     def _logs(self, points: Array) -> Array:
         config, grid = self._config, self._grid
-        if self._weighed_with != self._widening:
-            self._weighed_with = self._widening
-            sigma = config.hit_sigma * self._widening
-            self._likelihood = likelihood_field(self._field, sigma, config.random_share)
         result: Array = log_likelihoods(
             self._poses,
             points,
@@ -138,18 +157,6 @@ class Localizer:
             config.random_share,
         )
         return result
-
-    def _every_pose(self) -> Array:
-        """Poses (n, 3): free cells on a lattice, each with evenly spaced headings."""
-        skip = max(1, round(self._config.global_spacing / self._grid.resolution))
-        lattice = np.zeros(self._grid.cells.shape, dtype=np.bool_)
-        lattice[::skip, ::skip] = self._grid.cells[::skip, ::skip] == FREE
-        spots = self._grid.centers(lattice)
-        yaws = np.arange(self._config.global_headings) * (
-            2 * math.pi / self._config.global_headings
-        )
-        repeated = np.repeat(spots, len(yaws), axis=0)
-        return np.concatenate([repeated, np.tile(yaws, len(spots))[:, None]], axis=1)
 
     def _injected(self, logs: Array, beams: int) -> float:
         """Share of random particles, from the ratio of the recent to the long-term average fit."""
@@ -173,7 +180,5 @@ class Localizer:
             config.kld_quantile,
         )
         drawn = self._poses[chosen]
-        if self._widening > 1.0:
-            drawn += self._random.standard_normal(drawn.shape) * (0.06, 0.06, 0.04)
         extra = int(injected * len(drawn))
         self._poses = np.concatenate([drawn, self._anywhere(extra)]) if extra else drawn

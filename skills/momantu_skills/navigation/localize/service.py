@@ -105,7 +105,10 @@ class LocalizationService(Service):
             self._rest_scans -= 1
             self._localizer.jitter(self._config.rest_jitter)
         self._since_scan = [0.0, 0.0]
+        sought = self._localizer.lost
         self._localizer.observe(rays)
+        if sought and not self._localizer.lost:
+            self._rest_scans = self._config.rest_scans
 
     def _rays(self, robot: Robot) -> Rays:
         scan = read_laser(robot, self._laser)
@@ -127,6 +130,11 @@ class LocalizationService(Service):
     def quality(self) -> float:
         """0..1: how well the newest scan fits the map at the estimate (see `scan_fit`)."""
         return self._localizer.quality
+
+    @property
+    def places(self) -> tuple[Pose2D, ...]:
+        """Where the robot may be while it is sought on the whole map, likeliest first."""
+        return tuple(place.pose for place in self._localizer.places)
 
     def reset(self, map_from_base: Pose2D, sigma_position: float, sigma_yaw: float) -> None:
         """Restart around a pose; standard deviations in m and rad."""

@@ -1,0 +1,1 @@
+"""A world without physics: a bundled robot that rolls among the bodies of a world file."""
