@@ -1,15 +1,17 @@
-"""Floor plans in map_server's format: a YAML file beside a PGM or PNG picture, mode trinary.
+"""Floor plans in map_server's format: a YAML file beside a PGM or PNG picture.
 
-Pillow reads the picture: PGM (P2 and P5, any number of grey levels, comments), PNG and BMP, as
-map_server does; https://docs.ros.org/en/jazzy/p/nav2_map_server says what the keys mean.
+A plan in another mode than trinary, or turned, is read as the trinary and unturned one of the same
+building. Pillow reads the picture: PGM (P2 and P5, any number of grey levels, comments), PNG and
+BMP, as map_server does; https://docs.ros.org/en/jazzy/p/nav2_map_server says what the keys mean.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ from PIL import UnidentifiedImageError
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.files import write_whole
+from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import excerpt
 from momantu_bt.formats.yaml.errors import YamlRules
 from momantu_bt.formats.yaml.reader import YamlSyntaxError, compose
@@ -32,6 +35,15 @@ FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 """The values of a cell."""
 OCCUPIED_ABOVE, FREE_BELOW = 0.65, 0.196
 """map_server's default thresholds of darkness (0 white, 1 black) of occupied and free cells."""
+MODES = ("trinary", "scale", "raw")
+"""What the levels of a picture mean: free, occupied or neither; how likely occupied; occupancy in
+percent."""
+RAW_MOST = 100
+"""Occupancy of an occupied cell in mode raw; higher levels are unknown."""
+CELL_LEVELS = np.array([254, 0, 205], dtype=np.uint8)
+"""The grey levels with which map_saver writes FREE, OCCUPIED and UNKNOWN."""
+PARTS = (0.25, 0.75)
+"""Where a cell of a turned plan is looked up, as shares of its edge: no thin wall falls between."""
 MAX_CELLS = 100_000_000
 """Most pixels of a picture, enough for 500 m x 500 m at 0.05 m; more are taken for a mistake."""
 
@@ -98,19 +110,72 @@ def read_map(path: Path) -> MapPicture:
     resolution = _number(path, entry, "resolution")
     if not resolution > 0.0:
         raise MapError(f"{path}: resolution is {resolution}, expected metres per pixel above 0")
-    origin = _origin(path, entry)
-    if entry.get("mode", "trinary") != "trinary":
-        raise MapError(f"{path}: mode is {entry['mode']!r}, only trinary can be read")
-    levels, brightest = _read_picture(path.parent / str(entry["image"]))
-    return MapPicture(
-        levels,
-        resolution,
-        origin,
-        brightest,
-        bool(entry.get("negate", 0)),
-        _number(path, entry, "occupied_thresh"),
-        _number(path, entry, "free_thresh"),
-    )
+    x, y, yaw = _origin(path, entry)
+    mode = entry.get("mode", "trinary")
+    if mode not in MODES:
+        raise MapError(f"{path}: mode is {mode!r}; {valid_names(str(mode), MODES, 'modes')}")
+    high, low = _thresholds(path, entry)
+    file = path.parent / str(entry["image"])
+    levels, brightest = _read_picture(file)
+    picture = MapPicture(levels, resolution, (x, y), brightest, _negate(path, entry), high, low)
+    if mode != "trinary":
+        picture = _of_cells(_raw(picture) if mode == "raw" else _scaled(picture, file), picture)
+    return picture if yaw == 0.0 else _unturned(picture, yaw)
+
+
+def _of_cells(cells: NDArray[np.uint8], of: MapPicture) -> MapPicture:
+    """A trinary picture of cells (rows, columns), row 0 at the smallest y, where `of` lies."""
+    return MapPicture(CELL_LEVELS[cells[::-1]], of.resolution, of.origin)
+
+
+def _scaled(picture: MapPicture, file: Path) -> NDArray[np.uint8]:
+    """Cells of mode scale: between the thresholds what is likelier, unknown where transparent."""
+    middle = 0.5 * (picture.occupied_thresh + picture.free_thresh)
+    cells = replace(picture, occupied_thresh=middle, free_thresh=middle).cells()
+    with Image.open(file, formats=_FORMATS) as image:
+        if image.mode in ("LA", "RGBA", "PA"):
+            seen = np.asarray(image.getchannel("A"))[::-1] == np.uint8(255)
+            cells[~seen] = UNKNOWN
+    return cells
+
+
+def _raw(picture: MapPicture) -> NDArray[np.uint8]:
+    """Cells of mode raw, whose levels are percentages; `negate` does not count there."""
+    percent = np.asarray(picture.levels, dtype=np.float64)[::-1]
+    occupied = percent > picture.occupied_thresh * RAW_MOST
+    free = percent < picture.free_thresh * RAW_MOST
+    cells = np.where(occupied, OCCUPIED, np.where(free, FREE, UNKNOWN))
+    return np.where(percent > RAW_MOST, UNKNOWN, cells).astype(np.uint8)
+
+
+def _unturned(picture: MapPicture, yaw: float) -> MapPicture:
+    """The same plan on cells along the map's axes; yaw: of the picture about its lower left, rad.
+
+    A cell is occupied if any part of it is; otherwise it is what is in its middle.
+    """
+    cells, cell = picture.cells(), picture.resolution
+    rows, columns = cells.shape
+    c, s = math.cos(yaw), math.sin(yaw)
+    corners = np.array([[0, 0], [columns, 0], [0, rows], [columns, rows]]) * cell
+    corners = corners @ np.array([[c, s], [-s, c]]) + picture.origin
+    low = corners.min(axis=0)
+    wide, high = np.ceil((corners.max(axis=0) - low) / cell - 1e-6).astype(int)
+
+    def looked_up(along: float, up: float) -> NDArray[np.uint8]:
+        x = low[0] - picture.origin[0] + (np.arange(wide) + along)[None, :] * cell
+        y = low[1] - picture.origin[1] + (np.arange(high) + up)[:, None] * cell
+        column = np.floor((c * x + s * y) / cell).astype(np.int64)
+        row = np.floor((c * y - s * x) / cell).astype(np.int64)
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        found = np.full(column.shape, UNKNOWN, dtype=np.uint8)
+        found[inside] = cells[row[inside], column[inside]]
+        return found
+
+    turned = looked_up(0.5, 0.5)
+    for along, up in itertools.product(PARTS, PARTS):
+        turned[looked_up(along, up) == OCCUPIED] = OCCUPIED
+    at = (float(low[0]), float(low[1]))
+    return _of_cells(turned, replace(picture, origin=at))
 
 
 def write_map(path: Path, map_: MapPicture) -> None:
@@ -162,16 +227,32 @@ def _number(path: Path, entry: dict[str, Any], key: str) -> float:
     return value
 
 
-def _origin(path: Path, entry: dict[str, Any]) -> tuple[float, float]:
+def _thresholds(path: Path, entry: dict[str, Any]) -> tuple[float, float]:
+    """`occupied_thresh` and `free_thresh`."""
+    high, low = _number(path, entry, "occupied_thresh"), _number(path, entry, "free_thresh")
+    if not 0.0 <= low <= high <= 1.0:
+        raise MapError(
+            f"{path}: free_thresh is {low} and occupied_thresh {high}; expected shares of black "
+            "from 0 to 1, the first no larger than the second"
+        )
+    return high, low
+
+
+def _negate(path: Path, entry: dict[str, Any]) -> bool:
+    value = entry.get("negate", 0)
+    if isinstance(value, bool) or (isinstance(value, int) and value in (0, 1)):
+        return bool(value)
+    raise MapError(f"{path}: negate is {value!r}; expected 0, or 1 where white is occupied")
+
+
+def _origin(path: Path, entry: dict[str, Any]) -> tuple[float, float, float]:
     origin = entry.get("origin")
     values = [_finite(value) for value in origin] if isinstance(origin, list) else []
     numbers = [value for value in values if value is not None]
     if not len(values) == len(numbers) == 3:
         raise MapError(f"{path}: origin is {origin!r}, expected [x, y, yaw] in m and rad")
     x, y, yaw = numbers
-    if yaw != 0.0:
-        raise MapError(f"{path}: origin has yaw {yaw}; only unturned maps can be read, write 0.0")
-    return x, y
+    return x, y, yaw
 
 
 def _finite(value: object) -> float | None:

@@ -187,9 +187,11 @@ def test_trinary_values_and_row_order(tmp_path: Path, plain: bool, negate: int) 
         (b"P5 1 1 255\n1", "a: [", "this is not YAML"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "fine"), "resolution"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.05", "0"), "resolution"),
-        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("2.0, 0.0", "2.0, 0.3"), "yaw"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("2.0, 0.0", "2.0"), "origin"),
-        (b"P5 1 1 255\n1", YAML.format(negate=0) + "mode: scale\n", "trinary"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0) + "mode: scaled\n", "did you mean scale"),
+        (b"P5 1 1 255\n1", YAML.format(negate="maybe"), "expected 0, or 1"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.65", "65"), "expected shares"),
+        (b"P5 1 1 255\n1", YAML.format(negate=0).replace("0.65", "0.1"), "expected shares"),
         (b"P5 1 1 255\n1", YAML.format(negate=0).replace("plan.pgm", "else.pgm"), "else.pgm"),
     ],
 )
@@ -223,3 +225,44 @@ def test_a_png_is_read_as_well(tmp_path: Path) -> None:
     Image.fromarray(np.array([[0, 254], [205, 254]], np.uint8)).save(tmp_path / "floor.png")
     found = read_map(_write(tmp_path, image="floor.png"))
     assert found.cells().tolist() == [[UNKNOWN, FREE], [OCCUPIED, FREE]]
+
+
+@pytest.mark.parametrize("quarter", [1, 2, 3, -1, 5])
+def test_a_plan_turned_by_right_angles_is_the_same_building(tmp_path: Path, quarter: int) -> None:
+    plain = read_map(_write(tmp_path)).cells()
+    yaw = quarter * np.pi / 2
+    turned = read_map(_write(tmp_path, origin=f"[-1.0, 2.0, {yaw}]"))
+    assert turned.cells().tolist() == np.rot90(plain[::-1], quarter)[::-1].tolist()
+    corner = {1: (-1.1, 2.0), 2: (-1.15, 1.9), 3: (-1.0, 1.85)}[quarter % 4]
+    assert turned.origin == pytest.approx(corner)
+
+
+@given(st.floats(-4.0, 4.0).filter(lambda yaw: yaw != 0.0))
+def test_a_turned_wall_stays_where_it_is_and_has_no_hole(yaw: float) -> None:
+    levels = np.full((40, 60), 254, np.uint8)
+    levels[20, 5:55] = 0
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "plan.yaml"
+        write_map(path, MapPicture(levels, 0.05, (3.0, -2.0)))
+        path.write_text(path.read_text().replace("-2.0, 0]", f"-2.0, {yaw}]"))
+        plan = read_map(path)
+    c, s = np.cos(yaw), np.sin(yaw)
+    for along in np.arange(0.28, 2.72, 0.02):
+        x, y = 3.0 + c * along - s * 0.975, -2.0 + s * along + c * 0.975
+        column = int(np.floor((x - plan.origin[0]) / 0.05))
+        row = int(np.floor((y - plan.origin[1]) / 0.05))
+        assert plan.cells()[row, column] == OCCUPIED
+
+
+def test_scale_takes_what_is_likelier_and_transparent_as_unknown(tmp_path: Path) -> None:
+    picture = np.zeros((1, 4, 2), np.uint8)
+    picture[0, :, 0], picture[0, :, 1] = [0, 255, 170, 100], [255, 255, 255, 255]
+    picture[0, 1, 1] = 0
+    Image.fromarray(picture, "LA").save(tmp_path / "plan.png")
+    path = _write(tmp_path, image="plan.png", mode="scale")
+    assert read_map(path).cells().tolist() == [[OCCUPIED, UNKNOWN, FREE, OCCUPIED]]
+
+
+def test_raw_levels_are_percentages(tmp_path: Path) -> None:
+    path = _write(tmp_path, b"P5\n4 1\n255\n" + bytes([0, 100, 40, 255]), mode="raw", negate="1")
+    assert read_map(path).cells().tolist() == [[FREE, OCCUPIED, UNKNOWN, UNKNOWN]]
