@@ -31,7 +31,7 @@ from momantu_bt.plugins import PluginError
 from momantu_bt.robot import CameraSensor, Robot, SensorReading
 from momantu_bt.running.assembly import made, program, set_up
 from momantu_bt.running.calls import called_skills
-from momantu_bt.running.launch import open_world
+from momantu_bt.running.launch import open_world, site_of
 from momantu_bt.running.needed import check_parameters, check_sensors, services_of
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import prepare
@@ -95,7 +95,7 @@ class Session:
             world = open_world(prepared, {}, {}, {})
             if world is not None and world is not options.world:
                 self._stack.callback(world.close)
-            self._stage = Stage((), world, options.seed, self._stack)
+            self._stage = Stage((), world, options.seed, self._stack, site_of(prepared, world))
             events = Events()
             events.subscribe(Remarked, lambda event: options.remark(event.text))
             self._setting = set_up(options, self._stage, {}, {}, events)

@@ -79,7 +79,8 @@ def plan(
 class Stage:
     """The robot, the site and the skills of one run, ready for its faults.
 
-    world: None in a run without a world, which has neither robot nor site. `stack` frees whatever
+    world: None in a run without a world, which has neither robot nor site. site: what the robot is
+    told before any fault. `stack` frees whatever
     the faults needed.
 
     Raises:
@@ -87,14 +88,19 @@ class Stage:
     """
 
     def __init__(
-        self, planned: Sequence[Planned], world: World | None, seed: int, stack: ExitStack
+        self,
+        planned: Sequence[Planned],
+        world: World | None,
+        seed: int,
+        stack: ExitStack,
+        site: Site | None,
     ) -> None:
         self.world = world
         self._planned = planned
         self._effects: list[Effect | None] = []
         self._director: Director | None = None
         self.robot: Robot | None = None if world is None else world.robot
-        self.site: Site | None = None if world is None else world.site
+        self.site = site
         for one in planned:
             self._effects.append(self._effect(one, world, seed, stack))
 

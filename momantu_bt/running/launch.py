@@ -31,12 +31,13 @@ from momantu_bt.running.needed import LaunchError, check_parameters, check_senso
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import Prepared
 from momantu_bt.running.reporting import report_of
+from momantu_bt.running.told import off_the_map
 from momantu_bt.service import Service
 from momantu_bt.skill import Skill
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.world import World, WorldError
+from momantu_bt.world import Site, World, WorldError
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
@@ -130,9 +131,19 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
         if world is not options.world:
             stack.callback(_close_world, world, options.remark)
         check_parameters(needed, world.site)
-    stage = Stage(planned, world, options.seed, stack)
+    stage = Stage(planned, world, options.seed, stack, site_of(prepared, world))
     setting = set_up(options, stage, called, needed, events)
     return program(prepared, setting, kinds), stage, recorder
+
+
+def site_of(prepared: Prepared, world: World | None) -> Site | None:
+    """What the robot is told; None without a world."""
+    if world is None or prepared.told is None:
+        return None if world is None else world.site
+    site = prepared.told.of(world.site)
+    if (doubt := off_the_map(prepared.told, site.start)) is not None:
+        prepared.options.remark(doubt)
+    return site
 
 
 def _close_world(world: World, remark: Callable[[str], None]) -> None:

@@ -14,7 +14,7 @@ from momantu_bt.world import World
 
 _RECORDED = (
     *("world", "robot", "goal", "max_time", "realtime", "referee", "audit", "faults"),
-    "patience",
+    *("map", "names", "patience"),
 )
 
 
@@ -26,6 +26,9 @@ class RunOptions:
     robot: a name or a file, or None for the world's default.
     goal: what the referee demands, in the place of the tree's own goal: "world", "none", a text
     such as "can on table_b beside tag", a mapping, or a list of these.
+    map: the floor plan that the robot is told in the place of the world's: a folder that
+    `momantu-bt map` wrote, a map_server YAML file, or "none". names: a site file, or such a folder,
+    with the places and surfaces that it is told in the place of the world's.
     seed: selects the variation of the episode. values: initial keys of the root's board, as with
     `--set`. substitute: a file of rules that replace nodes. include: further tree files, or folders
     of them, that have trees which the tree runs. tolerant: nodes, trees and keys that stand
@@ -46,6 +49,8 @@ class RunOptions:
     world: str | World | None = None
     robot: str | None = None
     goal: Any = None
+    map: str | None = None
+    names: str | None = None
     seed: int = 0
     values: Mapping[str, Any] = field(default_factory=dict)
     substitute: Path | None = None

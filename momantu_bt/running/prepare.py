@@ -9,6 +9,7 @@ from typing import Any
 
 from momantu_bt.robot import RobotDescription
 from momantu_bt.running.options import RunOptions
+from momantu_bt.running.told import Told, read_told, with_told
 from momantu_bt.tree.check.elsewhere import missing_for_a_run
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.tree.files.given_text import TreeText
@@ -24,13 +25,15 @@ from momantu_bt.world import Site, World
 class Prepared:
     """A tree that is ready to run. document: without errors. registry: the plug-ins it can name.
 
-    substitution: the nodes to replace, and by what.
+    substitution: the nodes to replace, and by what. told: what the robot is told in the place of
+    its site's own; None: nothing.
     """
 
     document: Document
     options: RunOptions
     registry: Registry
     substitution: Substitution
+    told: Told | None = None
 
 
 def prepare(
@@ -41,11 +44,15 @@ def prepare(
     Raises:
         TreeNotFound: the tree or the file of rules does not exist.
         TreeError: the tree or the rules have errors; the exception lists all of them.
+        InputError, MapError, SiteFileError: the map or the names to be told are wrong.
     """
     having = registry if registry is not None else Registry.installed()
     world = options.world_name
     if options.world is not None and not isinstance(options.world, str):
         having = with_world(having, options.world)
+    told = read_told(options.map, options.names)
+    if told is not None:
+        having = with_told(having, told)
     document = load(
         tree,
         having,
@@ -60,7 +67,7 @@ def prepare(
     if options.substitute is not None:
         substitution = load_substitution(options.substitute, document, having, world)
     refuse_missing(document, having, substitution)
-    return Prepared(document, options, having, substitution)
+    return Prepared(document, options, having, substitution, told)
 
 
 def refuse_missing(document: Document, registry: Registry, substitution: Substitution) -> None:

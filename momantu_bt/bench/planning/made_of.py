@@ -25,6 +25,7 @@ from momantu_bt.plugins import Group
 from momantu_bt.record.versions import LIBRARIES
 from momantu_bt.robots.meshes import MESHES
 from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.running.told import NO_MAP, told_files
 from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.catalogue.nodes import BEHAVIOURS, PLUGINS
 from momantu_bt.tree.check.named_world import WITHOUT_WORLD, world_of
@@ -57,6 +58,8 @@ def made_of(
     max_time: float = 600.0,
     referee: bool = True,
     goal: Any = None,
+    map_: str | None = None,
+    names: str | None = None,
 ) -> dict[str, str]:
     """All that decides an episode except its seed and its fault, by readable names.
 
@@ -85,6 +88,9 @@ def made_of(
     found["the time limit"] = f"{max_time:g} s"
     if goal is not None:
         found["the goal"] = json.dumps(goal, sort_keys=True, default=str)
+    found |= _digests("told", told_files(map_, names))
+    if map_ == NO_MAP:
+        found["the map"] = NO_MAP
     if not referee:
         found["the referee"] = "none"
     return found

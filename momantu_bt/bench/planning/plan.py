@@ -110,6 +110,8 @@ class Plan:
     goal: Any = None
     limit: float = 900.0
     record: str = "none"
+    map: str | None = None
+    names: str | None = None
 
     def specs(self, rows: Mapping[str, Row], folder: Path) -> list[EpisodeSpec]:
         """The episodes that have no row yet. folder: of the results; records go below it."""
@@ -141,6 +143,8 @@ class Plan:
             fault,
             place,
             self.limit,
+            self.map,
+            self.names,
             self.wanted.made_of,
         )
 

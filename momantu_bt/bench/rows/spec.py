@@ -27,7 +27,8 @@ class EpisodeSpec:
     values: keys of the root's board, raw as in a file. max_time: simulated seconds. referee:
     False takes it out, and what the tree says counts. goal: as given, None for the tree's.
     fault: as written, None without one. record: a folder to make; None: no record. limit: seconds
-    of wall time after which the watchdog ends the process from outside. made_of: all else that
+    of wall time after which the watchdog ends the process from outside. map, names: what the robot
+    is told in the place of the world's, as in `RunOptions`. made_of: all else that
     decides the outcome, by name (versions, digests of files and code).
     """
 
@@ -43,6 +44,8 @@ class EpisodeSpec:
     fault: str | None = None
     record: str | None = None
     limit: float = 900.0
+    map: str | None = None
+    names: str | None = None
     made_of: Mapping[str, str] = field(default_factory=dict)
 
     @property

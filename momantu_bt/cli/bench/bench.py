@@ -19,7 +19,9 @@ from momantu_bt.cli.shared.options import (
     Jobs,
     Judged,
     Kept,
+    MapTold,
     MaxTime,
+    NamesTold,
     RayAddress,
     Robot,
     Runner,
@@ -65,6 +67,8 @@ def bench(
         str | None, typer.Option(help="A world's name. Default: the tree's own.")
     ] = None,
     robot: Robot = None,
+    map_: MapTold = None,
+    names: NamesTold = None,
     set_: Settings = None,
     values: Values = None,
     max_time: MaxTime = 600.0,
@@ -118,6 +122,7 @@ def bench(
       momantu-bt bench trees/bring_object.yaml --seeds 0:500 --jobs 8 --report bench.json
       momantu-bt bench my_tree.yaml --seeds 0:50 --set "speed=0.5 m/s" --demand 0.9
       momantu-bt bench bring_object --seeds 0:10 --faults all
+      momantu-bt bench bring_object --seeds 0:20 --map maps/office
       momantu-bt bench bring_object --seeds 0:500 --engine ray --ray-address 10.0.0.4:6379
       momantu-bt bench --merge machine_1 machine_2 --out both
     """
@@ -133,6 +138,8 @@ def bench(
     how = bench_setup.HowToRun(
         *(world, robot, board, max_time, referee, episode_limit, chosen, broken),
         goal=given.given_goal(goal),
+        map=map_,
+        names=names,
     )
     plan, document = bench_setup.plan_of(place, parse_seeds(seeds), how)
     bench_setup.check_faults(fault or [], document, how)

@@ -28,6 +28,7 @@ from momantu_bt.formats.names import valid_names
 from momantu_bt.robots.plugins import ROBOTS
 from momantu_bt.running.launch import check_world
 from momantu_bt.running.prepare import refuse_missing
+from momantu_bt.running.told import absolute_map, read_told, with_told
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.files.lookup import find
 from momantu_bt.tree.files.settings import Given
@@ -53,6 +54,8 @@ class HowToRun:
     record: str
     faults: Sequence[str | None] = field(default=(None,))
     goal: Any = None
+    map: str | None = None
+    names: str | None = None
 
 
 def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Document]:
@@ -67,17 +70,22 @@ def plan_of(tree: str, seeds: Sequence[int], how: HowToRun) -> tuple[Plan, Docum
         "world": WORLDS.absolute(how.world),
         "robot": ROBOTS.absolute(how.robot),
     }
-    document = load(place, registry, values=how.values, goal=how.goal, **told).document
+    own_map, names = absolute_map(how.map), absolute_map(how.names)
+    seen = read_told(own_map, names)
+    telling = registry if seen is None else with_told(registry, seen)
+    document = load(place, telling, values=how.values, goal=how.goal, **told).document
     refuse_missing(document, registry, Substitution())
     check_world(document, how.world, skills_in(document), registry)
     if WORLDS.is_path(document.world or ""):
         # on another machine, an episode has the tree in another folder
         told["world"] = told["world"] or WORLDS.absolute(world_of(document, None))
     told |= {"max_time": how.max_time, "referee": how.referee, "goal": how.goal}
-    made = made_of(document, registry, values=how.values, **told)
+    own: dict[str, Any] = {"map_": own_map, "names": names}
+    made = made_of(document, registry, values=how.values, **own, **told)
     wanted = Wanted(tuple((seed, fault) for seed in seeds for fault in how.faults), made)
     values: Mapping[str, Any] = dict(how.values)
-    return Plan(place, wanted, values=values, limit=how.limit, record=how.record, **told), document
+    told |= {"map": own_map, "names": names, "limit": how.limit, "record": how.record}
+    return Plan(place, wanted, values=values, **told), document
 
 
 def demands_of(tree: str, faults: Sequence[str], patterns: str | None) -> tuple[Demand, ...]:

@@ -19,6 +19,8 @@ from momantu_bt.cli.shared.options import (
     VIEW_PORT,
     GoalGiven,
     Include,
+    MapTold,
+    NamesTold,
     RecordFolder,
     ReportTo,
     Robot,
@@ -67,6 +69,8 @@ def run(
         str | None, typer.Option(help="A world's name or file, or none. Default: the tree's own.")
     ] = None,
     robot: Robot = None,
+    map_: MapTold = None,
+    names: NamesTold = None,
     seed: Seed = 0,
     set_: Settings = None,
     values: Values = None,
@@ -119,6 +123,8 @@ def run(
       momantu-bt run trees/bring_object.yaml --seed 3 --video run.mp4 --report run.json
       momantu-bt run bring_object --set "tag_edge=150 mm" --view
       momantu-bt run bring_object --robot my_robot/robot.yaml
+      momantu-bt run bring_object --map maps/office
+      momantu-bt run my_tree.yaml --map none --names maps/office
       momantu-bt run my_tree.yaml --goal "can on table_b beside tag"
       momantu-bt run bring_object --fault "camera.dead@12 s:for=10 s"
     """
@@ -126,6 +132,8 @@ def run(
     options = run_options.RunOptions(
         world=world,
         robot=robot,
+        map=map_,
+        names=names,
         seed=seed,
         values=given.given_values(set_ or [], values),
         substitute=substitute,

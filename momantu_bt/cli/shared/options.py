@@ -15,6 +15,23 @@ Jobs: TypeAlias = Annotated[
 Robot: TypeAlias = Annotated[
     str | None, typer.Option(help="A robot's name or file. Default: the world's own.")
 ]
+MapTold: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--map",
+        metavar="DIR",
+        help="The floor plan that the robot is told: a folder of `momantu-bt map`, a map_server "
+        "YAML file, or none. Default: the world's own.",
+    ),
+]
+NamesTold: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--names",
+        metavar="FILE",
+        help="Names of places and surfaces that the robot is told: a site.yaml, or a map's folder.",
+    ),
+]
 Seed: TypeAlias = Annotated[
     int, typer.Option(min=0, help="Varies the episode. The same seed gives the same run.")
 ]
