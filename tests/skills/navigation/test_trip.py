@@ -172,22 +172,6 @@ def test_it_waits_for_localization_a_little(obedient: MakeObedient, run_move: Ru
     assert 1.0 < base.now() < 1.5
 
 
-def test_a_base_that_is_carried_away_while_it_drives_stops_and_says_so(
-    obedient: MakeObedient, run_move: RunMove
-) -> None:
-    base = _base(obedient, Pose2D(1.0, 3.0, 0.0))
-
-    def carried() -> None:
-        if base.at.x > 1.0:
-            base.localization = Belief(quality=0.5)
-
-    with pytest.raises(Failure) as caught:
-        run_move(travel(base, _mppi(base), _to(Pose2D(7.0, 3.0, 0.0)), recovery=True), carried)
-    assert caught.value.code == "NOT_LOCALIZED"
-    assert base.stands()
-    assert base.at.x < 5.0
-
-
 def test_another_failure_is_not_recovered_from(obedient: MakeObedient, run_move: RunMove) -> None:
     base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
 

@@ -64,10 +64,6 @@ class Obedient:
     def pose(self) -> Pose2D:
         return self.map_from_odom() @ self.at
 
-    @property
-    def fit(self) -> float:
-        return float(self.localization.quality)
-
     def show(self, path: Array) -> None:
         """Nobody watches."""
 

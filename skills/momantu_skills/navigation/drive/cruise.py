@@ -32,11 +32,6 @@ DETOURS = 8
 """Replans to a longer path before the base is reported to drive in circles."""
 LONGEST_BACK = 0.8
 """Longest distance that the base backs up from a table to free its arm, m."""
-ASTRAY = 0.65
-"""Fit of scans to the map, 0 to 1, below which the base may be elsewhere than it believes. Usual
-drives keep above 0.8; a base that was carried away sees 0.3 to 0.6."""
-ASTRAY_FOR = 2.0
-"""Time that the fit may be so low while the base drives, s: somebody may stand before the laser."""
 PROGRESS = 0.1
 """Decrease of the remaining distance that counts as progress, in weighted metres."""
 
@@ -64,10 +59,7 @@ def leave(vehicle: Vehicle, heading: float) -> Drive:
 def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive:
     """Drive until a simulated approach to the route's goal pose ends within `distance` m of it.
 
-    Ends at the lead-in at the latest.
-
-    Raises:
-        Failure: PATH_BLOCKED, NO_PROGRESS, or NOT_LOCALIZED where scans no longer fit the map.
+    Ends at the lead-in at the latest. Raises PATH_BLOCKED or NO_PROGRESS.
     """
     watch = _Watch(vehicle, route)
     mppi.restart()
@@ -118,7 +110,7 @@ class _Watch:
         self._vehicle = vehicle
         self._detours = 0
         self._best = math.inf
-        self._best_at = self._planned_at = self._fitted_at = vehicle.now()
+        self._best_at = self._planned_at = vehicle.now()
         self.planned(route)
 
     def planned(self, route: Route) -> None:
@@ -142,19 +134,8 @@ class _Watch:
         return age > 0.4 and route.crossed(self._vehicle, pose)
 
     def check(self, to_go: float) -> None:
-        """Raise NO_PROGRESS if the remaining distance has not fallen for too long.
-
-        Raise NOT_LOCALIZED if the scans have not fitted the map for too long.
-        """
+        """Raise NO_PROGRESS if the remaining distance has not fallen for too long."""
         now = self._vehicle.now()
-        if self._vehicle.fit >= ASTRAY:
-            self._fitted_at = now
-        elif now - self._fitted_at > ASTRAY_FOR:
-            raise Failure(
-                "NOT_LOCALIZED",
-                f"for {ASTRAY_FOR:.0f} s the scans have fitted the map by less than {ASTRAY}",
-                quality=self._vehicle.fit,
-            )
         if to_go < self._best - PROGRESS:
             self._best, self._best_at = to_go, now
         if now - self._best_at > self._vehicle.config.patience:

@@ -68,11 +68,6 @@ class Lost(Vehicle):
         """Return the identity: all poses are in odom."""
         return Pose2D(0.0, 0.0, 0.0)
 
-    @property
-    def fit(self) -> float:
-        """1: the base drives by what it sees, not by a map."""
-        return 1.0
-
     def show(self, path: Array) -> None:
         """Draw nothing: viewers show paths on the map."""
 

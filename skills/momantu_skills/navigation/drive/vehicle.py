@@ -128,11 +128,6 @@ class Vehicle:
         """Return the newest result of localization."""
         return Pose2D.from_transform(self._frames.lookup(MAP, ODOM))
 
-    @property
-    def fit(self) -> float:
-        """How well the newest scan fits what the base drives by: 0 to 1."""
-        return self.localization.quality
-
     def show(self, path: Array) -> None:
         """Draw a path (n, 2) and the costmap, if somebody watches; it changes nothing."""
         if not self._skill.host.watched:
