@@ -18,12 +18,12 @@ from momantu_bt.service import HeldObject, Localization
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
-from momantu_skills.navigation.drive.overlooked import Overlooked
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
+    from momantu_skills.navigation.drive import overlooked
     from momantu_skills.navigation.map import costmap, heights
 
 GAZE = (2.0, 0.0, 0.1)
@@ -107,7 +107,7 @@ class Vehicle:
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
         self._hits = np.zeros((0, 2))
-        self._overlooked = Overlooked()
+        self._overlooked = overlooked.Overlooked()
         self.blind = 0.0
         self.blocked_for = 0.0
         self.blocked_total = 0.0
@@ -234,8 +234,8 @@ class Vehicle:
         load nothing that stands at their height.
         """
         command, speed = (linear, angular, lateral), self.speed()
-        overlooked = self._overlooked.near(self.odom_from_base(), guard.NEAR)
-        hits = np.vstack([self._hits, overlooked])
+        also = self._overlooked.near(self.odom_from_base(), guard.NEAR)
+        hits = np.vstack([self._hits, also])
         share = guard.safe_share(command, speed, self.limits, self.base_discs, hits)
         return min(share, self._body.share(command, speed)) if share > 0.0 else share
 
