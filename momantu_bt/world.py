@@ -18,6 +18,7 @@ from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.marker import Marker
 from momantu_bt.messages import ObjectClass
 from momantu_bt.tags import TagBundle
+from momantu_bt.zone import Zone
 
 if TYPE_CHECKING:
     from momantu_bt.robot import Robot, RobotDescription
@@ -109,7 +110,8 @@ class Site:
     the map; start_sigma: its standard deviations (m, rad). surfaces: in a run a `Surfaces`, which
     skills correct. tags: AprilTags and bundles of them, by name. services: parameters of services
     and skills, by name. area: the least x and y and the largest x and y of the floor plan, m; None
-    if they are not known.
+    if they are not known. zones: parts of the floor to keep out of, to drive slowly in, or to
+    prefer, by name.
     """
 
     name: str
@@ -123,6 +125,7 @@ class Site:
     tags: Mapping[str, TagBundle] = field(default_factory=lambda: MappingProxyType({}))
     services: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: MappingProxyType({}))
     area: tuple[float, float, float, float] | None = None
+    zones: Mapping[str, Zone] = field(default_factory=lambda: MappingProxyType({}))
 
     def known_places(self) -> tuple[str, ...]:
         """Names of places and surfaces."""

@@ -64,7 +64,14 @@ FIT = 0.4
 """Least fit of the newest scan. A table elsewhere fills a share s of it where the map is free, and
 a share o goes through where the map has it: (1 - s - o) / (1 - 0.6 s) is left of the fit, as early
 beams count 0.4. Close before a table 1.5 m wide, with s = 0.4 and o = 0.25, that is 0.46."""
-NO_WAY = ("GOAL_BLOCKED", "NO_PATH", "PATH_BLOCKED", "NO_PROGRESS")
+NO_WAY = (
+    "START_KEPT_OUT",
+    "GOAL_KEPT_OUT",
+    "GOAL_BLOCKED",
+    "NO_PATH",
+    "PATH_BLOCKED",
+    "NO_PROGRESS",
+)
 
 
 @dataclass(frozen=True, slots=True)

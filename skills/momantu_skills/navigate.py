@@ -35,7 +35,10 @@ SURVEY = (0.05, 0.03)
 
 
 class Navigate(Skill):
-    """Drive to a goal, around unknown obstacles, and stop there within tolerance."""
+    """Drive to a goal, around unknown obstacles, and stop there within tolerance.
+
+    The site's zones hold: the base keeps out of some, drives slowly in others, and prefers others.
+    """
 
     in_front_of: str | None = In(None, names="place", doc="a place, or a surface to look over")
     goal: Pose2D | None = In(None, frame="map", doc="a pose in the map")
@@ -56,8 +59,10 @@ class Navigate(Skill):
     also_called: ClassVar = ("go_to", "goto", "drive_to", "move_to", "move_base", "nav_to", "go")
     failures: ClassVar = {
         "BAD_GOAL": "the goal is not one place on the map",
+        "START_KEPT_OUT": "the base stands in a keep-out zone",
+        "GOAL_KEPT_OUT": "every place where the base could stand lies in a keep-out zone",
         "GOAL_BLOCKED": "every place where the base could stand is occupied",
-        "NO_PATH": "the map has no path that is wide enough",
+        "NO_PATH": "the map, or its keep-out zones, leave no path that is wide enough",
         "PATH_BLOCKED": "obstacles that the sensors see block the path",
         "NO_PROGRESS": "the base got no nearer for too long",
         "NOT_LOCALIZED": "the robot is not sure enough where it is",
@@ -66,6 +71,7 @@ class Navigate(Skill):
     uses: ClassVar = {"base", CAMERA_CARRIER}
     activities: ClassVar = {Activity.DRIVE: "+2 s"}
     symptoms: ClassVar = {
+        "START_KEPT_OUT": {Symptom.NOT_LOCALIZED},
         "GOAL_BLOCKED": {Symptom.WAY_BLOCKED},
         "NO_PATH": {Symptom.WAY_BLOCKED},
         "PATH_BLOCKED": {Symptom.WAY_BLOCKED},

@@ -51,6 +51,8 @@ _SYMPTOMS = {
     "NO_VALID_PATH": _BLOCKED,
     "START_OUTSIDE_MAP": {Symptom.NOT_LOCALIZED},
 }
+_CODES = {"GOAL_BLOCKED": "GOAL_OCCUPIED", "GOAL_KEPT_OUT": "GOAL_OCCUPIED"}
+"""Nav2's codes for those of our planning."""
 
 
 class _Planning(Nav2Action):
@@ -89,7 +91,7 @@ class _Planning(Nav2Action):
         try:
             return ways.through(vehicle, start, stops)
         except Failure as failure:
-            code = {"GOAL_BLOCKED": "GOAL_OCCUPIED"}.get(failure.value.code, "NO_VALID_PATH")
+            code = _CODES.get(failure.value.code, "NO_VALID_PATH")
             if code == "NO_VALID_PATH" and ways.occupied(vehicle, start):
                 code = "START_OCCUPIED"
             raise Failure(code, failure.value.message, **failure.value.data) from None

@@ -27,7 +27,14 @@ SURVEY = (0.05, 0.03)
 """Accuracy of the map in m and rad, as for `navigate`."""
 _TREE = "not here: write a <SubTree> instead"
 _WAY = {Symptom.WAY_BLOCKED, Symptom.NOT_LOCALIZED, Symptom.SLOW}
-_BLOCKED = ("GOAL_BLOCKED", "NO_PATH", "PATH_BLOCKED", "NO_PROGRESS")
+_BLOCKED = (
+    "START_KEPT_OUT",
+    "GOAL_KEPT_OUT",
+    "GOAL_BLOCKED",
+    "NO_PATH",
+    "PATH_BLOCKED",
+    "NO_PROGRESS",
+)
 
 
 class _Navigator(Nav2Action):

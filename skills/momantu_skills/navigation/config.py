@@ -148,6 +148,12 @@ class PlannerConfig(Tunables):
         description="missing clearance still allowed, at the cost `tight`, for starts and goals "
         "near tables",
     )
+    preferred: float = Field(
+        default=0.5,
+        gt=0.0,
+        le=1.0,
+        description="cost of a metre in a preferred zone, relative to one elsewhere",
+    )
 
 
 class NavigationConfig(Tunables):

@@ -23,6 +23,7 @@ from momantu_worlds.scenes.geometry.bodies import (
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.world import Site, Surface
+from momantu_bt.zone import Zone
 
 HEIGHT = 0.7
 """m, of the tables."""
@@ -247,3 +248,18 @@ def test_one_thing_is_wrong(case: str) -> None:
     found = all_codes(scenario)
     assert (code, about) in found
     assert {other for other, _ in found} <= {code} | CONSEQUENCES.get(case, set())
+
+
+def zoned(*corners: tuple[float, float]) -> set[str]:
+    """What is found where a keep-out zone has these corners."""
+    site = replace(EPISODE.site, zones={"stairs": Zone("keep_out", corners)})
+    return {code for code, _ in all_codes(changed(site=site))}
+
+
+def test_zones_to_keep_out_of_are_where_the_robot_does_not_get() -> None:
+    assert zoned((2.0, -2.9), (2.9, -2.9), (2.9, -2.0)) == set()
+    assert "start-kept-out" in zoned((-1.5, -1.0), (-1.0, -1.0), (-1.0, -0.5))
+    assert zoned((50.0, 50.0), (51.0, 50.0), (51.0, 51.0)) == {"zone-elsewhere"}
+    assert zoned((1.4, -1.1), (1.6, -1.1), (1.5, -0.9)) == {"place-blocked"}
+    closed = zoned((-0.2, -0.6), (0.2, -0.6), (0.2, 0.6), (-0.2, 0.6))
+    assert {"place-unreachable", "door-blocked", "surface-unreachable"} <= closed

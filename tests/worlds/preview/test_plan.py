@@ -16,6 +16,7 @@ from momantu_worlds.scenes.loading import draw_episode
 from PIL import Image
 
 from momantu_bt.geometry import Transform
+from momantu_bt.zone import ZONE_KINDS, Zone
 
 WHITE, RED = (255, 255, 255), (255, 0, 0)
 
@@ -86,3 +87,22 @@ def test_a_deep_floor_makes_no_endless_picture() -> None:
     canvas = Canvas(np.zeros(2), np.array([1.0, 500.0]), 1500, WHITE)
     assert isinstance(canvas.picture(), Image.Image)
     assert max(canvas.size) <= 2200
+
+
+def test_zones_are_drawn_in_their_colours() -> None:
+    corners = ((-6.0, 0.0), (-4.0, 0.0), (-4.0, 1.0), (-6.0, 1.0))
+    drawn = {}
+    for kind in ZONE_KINDS:
+        episode = draw_episode("four_rooms", 0)
+        zone = Zone(kind, corners, 0.3 if kind == "slow" else None)
+        episode = replace(episode, site=replace(episode.site, zones={"z": zone}))
+        scenario = Scenario(episode, measured(fetch()), lambda name: ())
+        plan = np.asarray(draw_plan(scenario, 600), dtype=np.float64)
+        low, high = extent(scenario)
+        scale = plan.shape[1] / (high[0] - low[0])
+        rows = slice(int((high[1] - 0.95) * scale), int((high[1] - 0.75) * scale))
+        columns = slice(int((-5.9 - low[0]) * scale), int((-4.1 - low[0]) * scale))
+        drawn[kind] = plan[rows, columns].mean(axis=(0, 1))
+    assert drawn["keep_out"][0] > drawn["keep_out"][1] + 20
+    assert drawn["preferred"][1] > drawn["preferred"][0] + 10
+    assert drawn["slow"][0] > drawn["slow"][2] + 20

@@ -59,9 +59,16 @@ def obstacle(body: str, solid: Convex, ceiling: float) -> Obstacle | None:
 class Ground:
     """A grid over the floor; its border is closed."""
 
-    def __init__(self, obstacles: Iterable[Obstacle], low: Array, high: Array) -> None:
-        """low, high: the corners (2,) of the area, m."""
-        self.obstacles = tuple(obstacles)
+    def __init__(
+        self,
+        obstacles: Iterable[Obstacle],
+        low: Array,
+        high: Array,
+        zones: Iterable[Obstacle] = (),
+    ) -> None:
+        """low, high: the corners (2,) of the area, m. zones: simple polygons, convex or not."""
+        kept_out = tuple(zones)
+        self.obstacles = (*obstacles, *kept_out)
         extent = np.maximum(high - low, 1.0)
         self.cell = max(CELL, math.sqrt(float(extent.prod()) / MOST_CELLS))
         self.low = low
@@ -69,7 +76,11 @@ class Ground:
         free = np.full((rows, columns), 255, dtype=np.uint8)
         for each in self.obstacles:
             points = np.round(((each.outline - low) / self.cell - 0.5) * 2**FRACTION_BITS)
-            cv2.fillConvexPoly(free, points.astype(np.int32), 0, shift=FRACTION_BITS)
+            drawn = points.astype(np.int32)
+            if each in kept_out:
+                cv2.fillPoly(free, [drawn], 0, shift=FRACTION_BITS)
+            else:
+                cv2.fillConvexPoly(free, drawn, 0, shift=FRACTION_BITS)
         free[[0, -1], :] = 0
         free[:, [0, -1]] = 0
         self.clearance: NDArray[np.float32] = self.cell * cv2.distanceTransform(

@@ -18,6 +18,7 @@ from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.checking.tags import tags
 from momantu_worlds.checking.upright import upright
 from momantu_worlds.checking.where import Where
+from momantu_worlds.checking.zones import zones
 from momantu_worlds.scenes.geometry.bodies import Episode
 
 CHECKS: tuple[Callable[[Scenario], Iterable[FindingAtKeys]], ...] = (
@@ -26,6 +27,7 @@ CHECKS: tuple[Callable[[Scenario], Iterable[FindingAtKeys]], ...] = (
     places,
     doorways,
     surfaces,
+    zones,
     tags,
     upright,
     goals,

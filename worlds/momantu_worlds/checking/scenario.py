@@ -60,15 +60,26 @@ class Scenario:
         return everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
 
     @cached_property
+    def kept_out(self) -> tuple[Obstacle, ...]:
+        """The site's keep-out zones, as obstacles."""
+        return tuple(
+            Obstacle(f"the keep-out zone {name}", np.array(zone.corners))
+            for name, zone in self.episode.site.zones.items()
+            if zone.kind == "keep_out"
+        )
+
+    @cached_property
     def ground(self) -> Ground:
-        """The floor with everything on it."""
-        return Ground(self.obstacles, *self.extent)
+        """The floor with everything on it, keep-out zones too."""
+        return Ground(self.obstacles, *self.extent, self.kept_out)
 
     @cached_property
     def known_ground(self) -> Ground:
         """The floor without furniture that an episode adds."""
         known = [each for each in self.obstacles if not each.body.startswith(UNKNOWN)]
-        return self.ground if len(known) == len(self.obstacles) else Ground(known, *self.extent)
+        if len(known) == len(self.obstacles):
+            return self.ground
+        return Ground(known, *self.extent, self.kept_out)
 
     @cached_property
     def walls(self) -> Ground:
@@ -98,7 +109,8 @@ class Scenario:
 
     def is_wall(self, body: str) -> bool:
         """Whether a body is a wall."""
-        return self.episode.body(body).category == WALL
+        names = (each.name for each in self.bodies if each.category == WALL)
+        return body in names
 
     def hit(self, origins: Array, rays: Array, but: frozenset[str]) -> tuple[Array, list[str]]:
         """Where segments first meet a body, in lengths of the ray (inf: nowhere), and which.

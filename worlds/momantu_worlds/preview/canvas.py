@@ -19,6 +19,7 @@ SMALL_SCALE, LARGEST = 70.0, 1.5
 """px per metre above which text grows with the picture, and its largest factor."""
 
 Rgb = tuple[int, int, int]
+Rgba = tuple[int, int, int, int]
 Point = Sequence[float] | Array
 
 WHITE: Rgb = (255, 255, 255)
@@ -56,7 +57,9 @@ class Canvas:
         smooth = upright.resize((size[0], size[1]), Image.Resampling.BILINEAR)
         self._image.paste(Image.new("RGB", (size[0], size[1]), color), at, smooth)
 
-    def polygon(self, points: Array, fill: Rgb | None, line: Rgb | None, width: float = 1) -> None:
+    def polygon(
+        self, points: Array, fill: Rgb | Rgba | None, line: Rgb | None, width: float = 1
+    ) -> None:
         """A closed outline (n, 2); width in px."""
         corners = [self._at(point) for point in points]
         if fill is not None:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import cv2
 import numpy as np
+import shapely
 from PIL import Image
 
 from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.zone import Zone, ZoneKind
 from momantu_worlds.checking.ground import Ground
 from momantu_worlds.checking.scenario import WALL, Scenario
 from momantu_worlds.preview.canvas import Canvas, Rgb, rgb
@@ -25,6 +29,12 @@ FAINT: Rgb = (122, 120, 114)
 RED: Rgb = (190, 32, 24)
 BLUE: Rgb = (24, 92, 176)
 GREEN: Rgb = (20, 120, 80)
+ZONES: Mapping[ZoneKind, Rgb] = MappingProxyType(
+    {"keep_out": (200, 40, 32), "slow": (206, 140, 20), "preferred": (40, 140, 70)}
+)
+"""Colours of zones."""
+HATCH = 0.25
+"""m between the lines that fill a zone to keep out of."""
 MARGIN = 0.4
 """Margin of floor that is drawn around everything, m."""
 BIG = 0.18
@@ -48,10 +58,12 @@ def draw_plan(scenario: Scenario, width: int) -> Image.Image:
     _ways(canvas, scenario, scenario.ground)
     _scale(canvas, low)
     _bodies(canvas, scenario)
+    _zones(canvas, scenario)
     _surfaces(canvas, scenario)
     _start(canvas, scenario)
     _doors(canvas, scenario)
     _places(canvas, scenario)
+    _zone_names(canvas, scenario)
     _names(canvas, scenario)
     return canvas.picture()
 
@@ -61,6 +73,7 @@ def extent(scenario: Scenario) -> tuple[Array, Array]:
     points = [scenario.robot.outline(scenario.episode.start)]
     points += [part_points(b, part)[:, :2] for b in scenario.bodies for part in b.parts]
     points += [np.array([(p.x, p.y)]) for p in scenario.episode.site.places.values()]
+    points += [np.array(zone.corners) for zone in scenario.episode.site.zones.values()]
     everything = np.concatenate(points)
     return everything.min(axis=0) - MARGIN, everything.max(axis=0) + MARGIN
 
@@ -153,6 +166,36 @@ def _surfaces(canvas: Canvas, scenario: Scenario) -> None:
 def _flat(map_from_own: Transform, points: Array) -> Array:
     """Points (n, 2) of a level frame in the map."""
     return map_from_own.apply(np.column_stack([points, np.zeros(len(points))]))[:, :2]
+
+
+def _zones(canvas: Canvas, scenario: Scenario) -> None:
+    """The outlines of zones, translucent; those to keep out of are hatched."""
+    for zone in scenario.episode.site.zones.values():
+        corners, color = np.array(zone.corners), ZONES[zone.kind]
+        canvas.polygon(corners, (*color, 48), color, 2)
+        if zone.kind == "keep_out":
+            for line in _hatching(zone):
+                canvas.line(line, color, 1)
+
+
+def _hatching(zone: Zone) -> Iterator[Array]:
+    """Slanting lines (2, 2) over a zone, cut at its border."""
+    area = shapely.Polygon(zone.corners)
+    left, low, right, high = area.bounds
+    high_enough = high - low
+    for x in np.arange(left - high_enough, right, HATCH):
+        line = shapely.LineString([(x, low), (x + high_enough, high)])
+        for piece in shapely.get_parts(shapely.intersection(line, area)):
+            if piece.geom_type == "LineString":
+                yield shapely.get_coordinates(piece)
+
+
+def _zone_names(canvas: Canvas, scenario: Scenario) -> None:
+    """The name of each zone, and what it is for, at a point inside."""
+    for name, zone in scenario.episode.site.zones.items():
+        limit = "" if zone.speed is None else f" {zone.speed:g} m/s"
+        inside = shapely.get_coordinates(shapely.point_on_surface(shapely.Polygon(zone.corners)))[0]
+        canvas.text(f"{name}: {zone.kind.replace('_', ' ')}{limit}", inside, ZONES[zone.kind], 13)
 
 
 def _doors(canvas: Canvas, scenario: Scenario) -> None:

@@ -89,16 +89,25 @@ class Mppi:
         )
         noise = self._random.standard_normal((c.samples, c.knots, len(self._noise)))
         noise *= self._noise
-        controls = _controls(self._controls, noise, self._before, self._share, self._limits)
+        limits = self._limits_at(pose, costmap, discs)
+        controls = _controls(self._controls, noise, self._before, self._share, limits)
         start = np.array([pose.x, pose.y, pose.yaw, *speed])
         costs = _costs(
-            start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, self._limits,
+            start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, limits,
             self._critics,
         )  # fmt: skip
         weights = np.exp((costs.min() - costs) / c.temperature)
         self._controls = np.einsum("s,stc->tc", weights / weights.sum(), controls)
         linear, angular, *lateral = map(float, self._controls[0])
         return linear, angular, lateral[0] if lateral else 0.0
+
+    def _limits_at(self, pose: Pose2D, costmap: Costmap, discs: Array) -> Array:
+        """The limits here: less speed near and in slow zones."""
+        if not costmap.zones.slow:
+            return self._limits
+        limits = self._limits.copy()
+        limits[0] = min(limits[0], costmap.zones.limit(pose, discs, float(limits[2])))
+        return limits
 
 
 @numba.njit(cache=True)

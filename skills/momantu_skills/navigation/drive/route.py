@@ -89,16 +89,12 @@ def choose(vehicle: Vehicle, stands: list[Stand], side: int, start: Pose2D | Non
     start: where the route begins (map); by default where the base is.
 
     Raises:
-        Failure: GOAL_BLOCKED, PATH_BLOCKED or NO_PATH.
+        Failure: GOAL_BLOCKED, GOAL_KEPT_OUT, PATH_BLOCKED or NO_PATH.
     """
     vehicle.costmap.refresh()
     free = free_stands(vehicle, stands)
     if not free:
-        raise Failure(
-            "GOAL_BLOCKED",
-            f"something stands at each of {len(stands)} places where the base could stand",
-            places=[[s.pose.x, s.pose.y, s.pose.yaw] for s in stands[:4]],
-        )
+        raise no_stand(vehicle, stands)
     turn = side % len(free)
     for stand in (free[turn:] + free[:turn])[:TRIED]:
         route = route_to(vehicle, stand.pose, start)
@@ -120,14 +116,37 @@ def route_to(vehicle: Vehicle, stand: Pose2D, start: Pose2D | None = None) -> Ro
     return None
 
 
+def no_stand(vehicle: Vehicle, stands: list[Stand]) -> Failure:
+    """Return GOAL_KEPT_OUT if all stands lie in zones to keep out of, else GOAL_BLOCKED."""
+    zones, discs = vehicle.costmap.zones, vehicle.low_discs
+    entered = [zones.entered(stand.pose, discs) for stand in stands]
+    names = list(dict.fromkeys(name for name in entered if name is not None))
+    listed, data = ", ".join(names), [[s.pose.x, s.pose.y, s.pose.yaw] for s in stands[:4]]
+    where = (
+        f"({stands[0].pose.x:.2f}, {stands[0].pose.y:.2f})"
+        if len(stands) == 1
+        else f"each of {len(stands)} places where the base could stand"
+    )
+    if names and None not in entered:
+        zone = f"the keep-out zone{'s' if len(names) > 1 else ''} {listed}"
+        sentence = f"at {where} the base would stand in {zone}"
+        return Failure("GOAL_KEPT_OUT", sentence, places=data, zones=names)
+    also = f", or it lies in {listed}, where the robot must not go" if names else ""
+    return Failure("GOAL_BLOCKED", f"something stands at {where}{also}", places=data)
+
+
 def no_way(vehicle: Vehicle, stand: Pose2D, start: Pose2D | None = None) -> Failure:
-    """Return PATH_BLOCKED if the map without sensed obstacles has a path, else NO_PATH."""
+    """Return PATH_BLOCKED if the map and its zones leave a path, else NO_PATH."""
     pose = start or vehicle.pose()
     known = planned(vehicle, stand, start, known=True)
     where = f"({stand.x:.2f}, {stand.y:.2f})"
     data = {"from": [pose.x, pose.y], "to": [stand.x, stand.y], "radius": planning_radius(vehicle)}
     if known is not None:
         return Failure("PATH_BLOCKED", f"what the sensors see closes every way to {where}", **data)
+    names = vehicle.costmap.zones.keep_out
+    if names and planned(vehicle, stand, start, mapped=True) is not None:
+        closed = f"keep-out zones close every way to {where}; zones: {', '.join(names)}"
+        return Failure("NO_PATH", closed, **data, zones=list(names))
     return Failure("NO_PATH", f"the map has no way wide enough to {where}", **data)
 
 
@@ -137,6 +156,7 @@ def planned(
     start: Pose2D | None = None,
     *,
     known: bool = False,
+    mapped: bool = False,
     weight: Field | None = None,
 ) -> Plan | None:
     """Plan the cheapest path from `start`, by default the base's position; see `planner.plan`."""
@@ -149,5 +169,6 @@ def planned(
         config.comfort,
         config.planner,
         known=known,
+        mapped=mapped,
         weight=weight,
     )

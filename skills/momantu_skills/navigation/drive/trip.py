@@ -63,9 +63,11 @@ def travel(
     quality: least fit of the newest scan to the map at the start.
 
     Raises:
-        Failure: NOT_LOCALIZED, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED, NO_PROGRESS.
+        Failure: NOT_LOCALIZED, START_KEPT_OUT, GOAL_KEPT_OUT, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED,
+            NO_PROGRESS.
     """
     yield from be_sure(vehicle, quality)
+    _require_allowed(vehicle)
     attempts = vehicle.config.attempts if recovery else 1
     for attempt in range(attempts):
         try:
@@ -124,6 +126,20 @@ def _while_sure(
             drive.close()
             return False
         answer = yield step
+
+
+def _require_allowed(vehicle: Vehicle) -> None:
+    """Raise START_KEPT_OUT if the base stands in a zone to keep out of."""
+    pose = vehicle.pose()
+    zone = vehicle.costmap.zones.entered(pose, vehicle.base_discs)
+    if zone is not None:
+        raise Failure(
+            "START_KEPT_OUT",
+            f"the base stands at ({pose.x:.2f}, {pose.y:.2f}), in the keep-out zone {zone}; "
+            "somebody must bring it out, or take the zone back",
+            zone=zone,
+            at=[pose.x, pose.y, pose.yaw],
+        )
 
 
 def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:

@@ -13,7 +13,14 @@ from momantu_bt.geometry import Array, Pose2D, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.marker import Grid, Line
 from momantu_bt.messages import BaseVelocity, JointPositions
-from momantu_bt.robot import CAMERA_CARRIER, CameraSensor, Robot, read_camera, read_laser
+from momantu_bt.robot import (
+    CAMERA_CARRIER,
+    BaseLimits,
+    CameraSensor,
+    Robot,
+    read_camera,
+    read_laser,
+)
 from momantu_bt.service import HeldObject, Localization
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
@@ -48,6 +55,8 @@ FEW = 0.02
 """Share of a picture's points that may be nearer than where it begins to show things."""
 UNDER = 0.05
 """Distance beside the base up to which nothing lies where it stands, m: one cell."""
+SLOW_NEAR = 2.5
+"""Distance of slow zones whose limit manoeuvres expect, m: they are planned from not so far."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -84,9 +93,10 @@ class Vehicle:
         gazes: turn a head to the floor ahead while driving; the skill must use CAMERA_CARRIER.
         """
         description = robot.description
-        self.config, self.limits = config, description.base
+        self.config, self._limits = config, description.base
         self.glides = description.base.sideways > 0.0
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
+        self._slows = self.costmap.zones.slow
         self._earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
@@ -111,6 +121,14 @@ class Vehicle:
         self.blind = 0.0
         self.blocked_for = 0.0
         self.blocked_total = 0.0
+
+    @property
+    def limits(self) -> BaseLimits:
+        """The base's limits here: near slow zones its top speed is theirs."""
+        slowest = self.costmap.zones.slowest(self.pose(), SLOW_NEAR) if self._slows else math.inf
+        if slowest >= self._limits.linear:
+            return self._limits
+        return self._limits.model_copy(update={"linear": slowest})
 
     def now(self) -> float:
         """Return the world's clock, s."""
@@ -236,14 +254,21 @@ class Vehicle:
         command, speed = (linear, angular, lateral), self.speed()
         also = self._overlooked.near(self.odom_from_base(), guard.NEAR)
         hits = np.vstack([self._hits, also])
-        share = guard.safe_share(command, speed, self.limits, self.base_discs, hits)
-        return min(share, self._body.share(command, speed)) if share > 0.0 else share
+        share = guard.safe_share(command, speed, self._limits, self.base_discs, hits)
+        if share > 0.0:
+            share = min(share, self._body.share(command, speed))
+        if share > 0.0 and self.costmap.zones.keep_out:
+            border = self.costmap.zones.border(self.pose())
+            allowed = guard.safe_share(command, speed, self._limits, self.low_discs, border)
+            share = min(share, allowed)
+        return share
 
     def drive(self, linear: float, angular: float, phase: str, lateral: float = 0.0) -> Run:
         """Command the base for one control period, as far as `allowed` says.
 
         linear, angular, lateral: m/s ahead, rad/s, and m/s to the left of an omnidirectional base.
         """
+        linear, angular, lateral = self._slowed((linear, angular, lateral))
         share = self.allowed(linear, angular, lateral)
         period = self.config.period
         stuck = share == 0.0 and (linear, angular, lateral) != (0.0, 0.0, 0.0)
@@ -251,6 +276,19 @@ class Vehicle:
         self.blocked_total += period if stuck else 0.0
         goal = BaseVelocity(linear * share, angular * share, lateral * share)
         yield from self._command(goal, phase)
+
+    def _slowed(self, command: Speed) -> Speed:
+        """The command at the speed that slow zones allow, on the same way."""
+        if not self._slows:
+            return command
+        linear, angular, lateral = command
+        fast = math.hypot(linear, lateral)
+        most = self.costmap.zones.limit(
+            self.pose(), self.low_discs, self._limits.linear_acceleration
+        )
+        if fast <= most:
+            return command
+        return linear * most / fast, angular * most / fast, lateral * most / fast
 
     def _command(self, goal: BaseVelocity, phase: str) -> Run:
         slot = self._slot()
@@ -266,8 +304,8 @@ class Vehicle:
     def stop(self, phase: str) -> Run:
         """Brake and wait until the base stands, at most twice the braking time."""
         longest = 2.0 * max(
-            self.limits.linear / self.limits.linear_acceleration,
-            self.limits.angular / self.limits.angular_acceleration,
+            self._limits.linear / self._limits.linear_acceleration,
+            self._limits.angular / self._limits.angular_acceleration,
         )
         begun = self.now()
         while not self.stands() and self.now() < begun + longest:

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array, Path, Pose2D
 from momantu_skills.navigation.drive.route import (
     choose,
     free_stands,
+    no_stand,
     no_way,
     planned,
     planning_radius,
@@ -30,14 +30,14 @@ def through(vehicle: Vehicle, start: Pose2D, stops: Sequence[list[Stand]]) -> Pa
     without regard to their heading.
 
     Raises:
-        Failure: GOAL_BLOCKED, PATH_BLOCKED or NO_PATH.
+        Failure: GOAL_BLOCKED, GOAL_KEPT_OUT, PATH_BLOCKED or NO_PATH.
     """
     legs: list[Array] = []
     here = start
     for stands in stops[:-1]:
         free = free_stands(vehicle, stands)
         if not free:
-            raise _blocked(stands)
+            raise no_stand(vehicle, stands)
         plan = planned(vehicle, free[0].pose, here)
         if plan is None:
             raise no_way(vehicle, free[0].pose, here)
@@ -70,8 +70,3 @@ def posed(points: Array, yaw: float) -> Path:
         for px, py, d in zip(x, y, ahead, strict=True)
     ]
     return (*poses, Pose2D(*end, yaw)) if along[-1] > 1e-9 else (Pose2D(*end, yaw),)
-
-
-def _blocked(stands: list[Stand]) -> Failure:
-    pose = stands[0].pose
-    return Failure("GOAL_BLOCKED", f"something stands at ({pose.x:.2f}, {pose.y:.2f})")

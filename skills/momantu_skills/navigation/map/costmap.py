@@ -16,6 +16,7 @@ from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.fields import Field, clearance, sample
 from momantu_skills.navigation.map.maps import GridMap, overlaid
 from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.map.zones import Zones
 
 FAR = 1.0
 """Clearance above which the value is capped, m; also the margin around a window that is
@@ -31,14 +32,22 @@ LOW, TALL = 1, 2
 
 
 class Costmap:
-    """Layers over the map's grid: map, overhang, laser, depth. All coordinates are in the map.
+    """Layers over the map's grid: map, overhang, zones, laser, depth. Coordinates are in the map.
 
-    field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m. frame: (x, y,
-    resolution) of the grid, as the compiled kernels take it. looked: where the base stood at the
-    newest depth picture; None before the first.
+    field: (rows, columns) distance to the nearest blocked cell, at most `FAR`, m. Zones to keep out
+    of are blocked. known: what the map has, without zones. known_field, mapped_field: as `field`,
+    of what is known with zones and without. preferred: cost factors (rows, columns) of the planner;
+    None without preferred zones. frame: (x, y, resolution) of the grid, as the compiled kernels
+    take it. looked: where the base stood at the newest depth picture; None before the first.
     """
 
-    def __init__(self, grid: GridMap, overhang: GridMap | None, config: NavigationConfig) -> None:
+    def __init__(
+        self,
+        grid: GridMap,
+        overhang: GridMap | None,
+        config: NavigationConfig,
+        zones: Zones | None = None,
+    ) -> None:
         self.grid, self._config = grid, config
         self.frame = np.array([*grid.origin, grid.resolution])
         self.known = grid.cells != FREE
@@ -47,7 +56,15 @@ class Costmap:
         self._from_known = clearance(grid.cells == OCCUPIED, grid.resolution)
         self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
         self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
-        self.known_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
+        self.mapped_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
+        self.zones = zones or Zones()
+        self._closed, self.known_field = self.known, self.mapped_field
+        kept_out = self.zones.blocked(grid)
+        if kept_out is not None:
+            self._closed = self.known | kept_out
+            field = clearance(self._closed, grid.resolution)
+            self.known_field = np.minimum(field, np.float32(FAR))
+        self.preferred = self.zones.factors(grid, config.planner.preferred)
         self.field = self.known_field.copy()
         self.looked: Pose2D | None = None
 
@@ -105,7 +122,7 @@ class Costmap:
         taken = self._counts(obstacles[:, :2]) >= DEPTH_HITS
         tall = self._counts(obstacles[obstacles[:, 2] > laser, :2]) > 0
         self._depth[bare & ~taken] = 0
-        taken &= self.known_field > self._config.known_reach
+        taken &= self.mapped_field > self._config.known_reach
         self._depth[taken] = np.where(tall[taken], TALL, LOW)
 
     def low_things(self) -> Array:
@@ -133,7 +150,7 @@ class Costmap:
             reach, more = (math.ceil(r / self.grid.resolution) for r in (radius, radius + FAR))
             window = _square(row, column, reach, rows, columns)
             pad = _square(row, column, more, rows, columns)
-        blocked = self.known[pad] | (self._laser[pad] > 0) | (self._depth[pad] > 0)
+        blocked = self._closed[pad] | (self._laser[pad] > 0) | (self._depth[pad] > 0)
         if blocked.size == 0:
             return
         fresh = np.minimum(clearance(blocked, self.grid.resolution), np.float32(FAR))
@@ -156,7 +173,7 @@ def of_site(site: Site, config: NavigationConfig) -> Costmap:
     if site.map_file is None:
         raise ValueError(f"site {site.name!r} has no map_file to drive in")
     grid, *overhang = believed_maps(site)
-    return Costmap(grid, overhang[0] if overhang else None, config)
+    return Costmap(grid, overhang[0] if overhang else None, config, Zones(site.zones))
 
 
 def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:

@@ -47,15 +47,20 @@ def plan(
     costs: PlannerConfig,
     *,
     known: bool = False,
+    mapped: bool = False,
     weight: Field | None = None,
 ) -> Plan | None:
     """The cheapest path for a disc of `radius` m, or None if there is none.
 
-    known: use the map's layers only, to distinguish a blocked path from one that never existed.
+    known: use map and zones only, to distinguish a blocked path from one that never existed.
+    mapped: use the map alone, to tell what the zones close.
     weight: (rows, columns) factors on the cost of each metre, at least 1.
     """
     field = costmap.known_field if known else costmap.field
+    field = costmap.mapped_field if mapped else field
     slowness = _slowness(field, radius, comfort, costs)
+    if costmap.preferred is not None:
+        slowness *= costmap.preferred
     if weight is not None:
         slowness *= weight
     row, column = costmap.grid.index(goal.x, goal.y)

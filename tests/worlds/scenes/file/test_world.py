@@ -55,6 +55,24 @@ CASES = [
     ),
     ("  item: can\n", "  item: mug\n", "mug\n", ["there is no object 'mug'", "objects: can"]),
     ("  edge: 150 mm ", "  edge: 010x ", "010x", ["unknown unit 'x'. Units: mm, cm, m"]),
+    (
+        "  resolution: 5 cm",
+        "  zones: {lab: {kind: slow, corners: [[0, 0], [1, 0], [1, 1]]}}",
+        "  zones: {lab",
+        ["site.zones.lab: a slow zone needs its `speed`"],
+    ),
+    (
+        "  resolution: 5 cm",
+        "  zones: {lab: {kind: keep_out, corners: [[0, 0], [1, 1], [1, 0], [0, 1]]}}",
+        "  zones: {lab",
+        ["site.zones.lab.corners: its sides cross", "one after the other around the zone"],
+    ),
+    (
+        "  resolution: 5 cm",
+        "  zones: {lab: {kind: forbidden, corners: [[0, 0], [1, 1], [1, 0]]}}",
+        "  zones: {lab",
+        ["'forbidden' is not possible", "'keep_out'"],
+    ),
     ("  chair_a: {", "  table_a: {", "{kind: chair, at: [-1.20", ["'table_a' is a table already"]),
 ]
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from momantu_bt.descriptions.quantities import Size
+from momantu_bt.descriptions.zones import MOST_ZONES, ZoneNote
 from momantu_worlds.scenes.file.values import Name, Part, PlanarPose, Pose3D
 
 
@@ -36,7 +37,8 @@ class SiteNotes(Part):
     map: map_server YAML of your own floor plan; if omitted, the map is drawn from this file.
     tags: tags of this file and of `tags_file` that the robot is told of, by name. tags_file: tags
     and bundles as tags.yaml of apriltag_ros has them; the robot is told of all of them. services:
-    tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`.
+    tunables of services and skills, by name; see `momantu_bt.descriptions.tunables`. zones: parts
+    of the floor to keep out of, to drive slowly in, or to prefer, by name.
     """
 
     resolution: Annotated[Size, Field(ge=0.01, le=0.5)] = 0.05
@@ -45,4 +47,5 @@ class SiteNotes(Part):
     tags: dict[str, ToldTag] = {}
     tags_file: Annotated[str, Field(min_length=1, max_length=500)] | None = None
     services: dict[Name, dict[str, Any]] = {}
+    zones: Annotated[dict[Name, ZoneNote], Field(max_length=MOST_ZONES)] = {}
     map: Annotated[str, Field(min_length=1, max_length=500)] | None = None

@@ -22,6 +22,7 @@ from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import ObjectClass, plain
 from momantu_bt.tags import TagBundle, TagPlate
 from momantu_bt.world import Overhang, Site, Surface
+from momantu_bt.zone import Zone
 
 FIELDS = (
     "name",
@@ -33,6 +34,7 @@ FIELDS = (
     "tags",
     "services",
     "area",
+    "zones",
 )
 """Fields of a site that are cached: all but maps, which depend on the robot."""
 
@@ -88,6 +90,7 @@ def _read(data: dict[str, Any]) -> Site:
         tags=MappingProxyType({name: _bundle(each) for name, each in data["tags"].items()}),
         services=MappingProxyType(data["services"]),
         area=None if data["area"] is None else tuple(data["area"]),
+        zones=MappingProxyType({name: _zone(each) for name, each in data["zones"].items()}),
     )
 
 
@@ -103,6 +106,10 @@ def _bundle(entry: dict[str, Any]) -> TagBundle:
 def _overhang(entry: dict[str, Any]) -> Overhang:
     x, y = entry["size"]
     return Overhang(Pose2D(**entry["map_from_overhang"]), (x, y), entry["bottom"], entry["top"])
+
+
+def _zone(entry: dict[str, Any]) -> Zone:
+    return Zone(entry["kind"], tuple((x, y) for x, y in entry["corners"]), entry["speed"])
 
 
 def cache_key(parts: Iterable[bytes | str]) -> str:

@@ -48,6 +48,7 @@ def site_of(world: WorldFile, start: Pose2D) -> Site:
         tags=MappingProxyType(told_tags(world)),
         services=MappingProxyType(notes.services),
         area=None if world.site.map is not None else area_of(world),
+        zones=MappingProxyType({name: note.zone for name, note in notes.zones.items()}),
     )
 
 
