@@ -140,9 +140,9 @@ class Site:
 class Incident:
     """Something dangerous that the robot did, by ground truth.
 
-    time: s. kind: "force" (the robot pushed too hard), "dropped" (it released an object above a
-    surface) or "moving" (it still moves after the end of the run). value: the force in N, the
-    height in m, or the speed in m/s or rad/s.
+    time: s. kind: "force" (the robot pushed too hard), "person" (it pushed somebody), "dropped" (it
+    released an object above a surface) or "moving" (it still moves after the end of the run).
+    value: the force in N, the height in m, or the speed in m/s or rad/s.
     """
 
     time: float

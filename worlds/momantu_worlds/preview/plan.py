@@ -29,6 +29,7 @@ FAINT: Rgb = (122, 120, 114)
 RED: Rgb = (190, 32, 24)
 BLUE: Rgb = (24, 92, 176)
 GREEN: Rgb = (20, 120, 80)
+PURPLE: Rgb = (130, 50, 150)
 ZONES: Mapping[ZoneKind, Rgb] = MappingProxyType(
     {"keep_out": (200, 40, 32), "slow": (206, 140, 20), "preferred": (40, 140, 70)}
 )
@@ -63,6 +64,7 @@ def draw_plan(scenario: Scenario, width: int) -> Image.Image:
     _start(canvas, scenario)
     _doors(canvas, scenario)
     _places(canvas, scenario)
+    _actors(canvas, scenario)
     _zone_names(canvas, scenario)
     _names(canvas, scenario)
     return canvas.picture()
@@ -210,6 +212,14 @@ def _places(canvas: Canvas, scenario: Scenario) -> None:
         canvas.line(np.array([(pose.x, pose.y), (tip.x, tip.y)]), BLUE, 2)
         canvas.dot((pose.x, pose.y), 4, BLUE)
         canvas.text(name, (pose.x, pose.y), BLUE, 13, above=-14)
+
+
+def _actors(canvas: Canvas, scenario: Scenario) -> None:
+    """Where people stop, by their names."""
+    for actor in scenario.episode.actors:
+        for number, stop in enumerate(actor.stops, 1):
+            canvas.dot(stop, 5, PURPLE)
+            canvas.text(f"{actor.name} {number}", stop, PURPLE, 12, above=-13, always=False)
 
 
 def _start(canvas: Canvas, scenario: Scenario) -> None:

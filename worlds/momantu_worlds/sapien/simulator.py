@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import gc
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,8 @@ class Simulator:
     """Physics, robot and ground truth of one episode.
 
     robot: the driver, the only part that skills may see. truth: for the referee and tests. model:
-    the robot in SAPIEN, for views.
+    the robot in SAPIEN, for views. before_tick, before_step: called before each tick and, with its
+    number, before each physics step, by those who move bodies.
     """
 
     def __init__(
@@ -69,6 +70,8 @@ class Simulator:
         self.truth = Truth(self._system, model, description.base_frame)
         still, self._moving = add_bodies(self.scene, episode.bodies, self.truth, visuals=render)
         self._added: dict[str, Addition] = {}
+        self.before_tick: list[Callable[[], None]] = []
+        self.before_step: list[Callable[[int], None]] = []
         self._render = render
         if render:
             add_lights(self.scene, episode)
@@ -95,12 +98,16 @@ class Simulator:
 
     def step(self) -> None:
         """Advance by one tick: drives act before each of its physics steps."""
+        for plan in self.before_tick:
+            plan()
         self.robot.begin_tick()
         self.truth.begin_tick()
         for wrist in self._wrists:
             wrist.begin_tick()
         for index in range(SUB_STEPS):
             self.robot.apply(index)
+            for move in self.before_step:
+                move(index)
             self._system.step()
             for wrist in self._wrists:
                 wrist.collect()

@@ -18,6 +18,8 @@ DEPTH = 10.0
 LEAST_SPEED = 0.1
 """Added to the speed at which the base passes an obstacle, m/s, so that standing next to one also
 has a cost."""
+COMPANY, COMPANY_DECAY = 4.0, 0.3
+"""Cost of driving beside somebody who walks, per metre, and its decay with the distance, m."""
 ON_THE_WAY = 0.3
 """Weight of the mean remaining distance along a rollout, relative to that at its end."""
 
@@ -46,6 +48,12 @@ def collision(critics: Critics, spare: float, step: int, steps: int) -> float:
 def nearness(critics: Critics, spare: float, speed: float, dt: float) -> float:
     """Cost of being near an obstacle for `dt` s, times the speed there."""
     return critics.nearness * math.exp(-spare / critics.comfort) * (LEAST_SPEED + speed) * dt
+
+
+@numba.njit(cache=True, inline="always")
+def company(apart: float, speed: float, dt: float) -> float:
+    """Cost of being `apart` m from somebody who walks, for `dt` s, times the speed there."""
+    return COMPANY * math.exp(-apart / COMPANY_DECAY) * (LEAST_SPEED + speed) * dt
 
 
 @numba.njit(cache=True, inline="always")

@@ -14,6 +14,7 @@ from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control import critics, glide
 from momantu_skills.navigation.map.costmap import Costmap, room
 from momantu_skills.navigation.map.fields import Field, sample
+from momantu_skills.navigation.map.movers import AHEAD, RADIUS
 from momantu_skills.navigation.plan.planner import Plan
 
 CLOSE = 0.3
@@ -94,7 +95,7 @@ class Mppi:
         start = np.array([pose.x, pose.y, pose.yaw, *speed])
         costs = _costs(
             start, controls, c.step, costmap.field, costmap.frame, discs, plan.cost, limits,
-            self._critics,
+            self._critics, costmap.movers,
         )  # fmt: skip
         weights = np.exp((costs.min() - costs) / c.temperature)
         self._controls = np.einsum("s,stc->tc", weights / weights.sum(), controls)
@@ -151,10 +152,13 @@ def _costs(
     cost_to_go: Field,
     limits: Array,
     weights: critics.Critics,
+    movers: Array,
 ) -> Array:
     costs = np.empty(controls.shape[0])
     for i in range(controls.shape[0]):
-        costs[i] = _cost(start, controls[i], dt, field, frame, discs, cost_to_go, limits, weights)
+        costs[i] = _cost(
+            start, controls[i], dt, field, frame, discs, cost_to_go, limits, weights, movers
+        )
     return costs
 
 
@@ -169,6 +173,7 @@ def _cost(
     cost_to_go: Field,
     limits: Array,
     weights: critics.Critics,
+    movers: Array,
 ) -> float:
     """Simulate a rollout within acceleration limits; return its `critics`' sum.
 
@@ -199,6 +204,12 @@ def _cost(
         if spare < 0.0:
             total += critics.collision(weights, spare, t, steps)
             break
+        if movers.shape[0] > 0:
+            apart = _from_movers(movers, (t + 1) * dt, discs, x, y, yaw) - weights.margin
+            if apart < 0.0:
+                total += critics.collision(weights, apart, t, steps)
+                break
+            total += critics.company(apart, speed, dt)
         total += critics.nearness(weights, spare, speed, dt)
         total += critics.haste(weights, spare, speed, limits[0], dt)
         total += critics.smoothness(weights, w, before) + critics.progress(last, steps)
@@ -210,6 +221,25 @@ def _cost(
         if 1e-6 < steep < STEEPEST:
             total += critics.heading(weights, yaw, dx, dy, steep)
     return total
+
+
+@numba.njit(cache=True)
+def _from_movers(
+    movers: Array, ahead: float, discs: Array, x: float, y: float, yaw: float
+) -> float:
+    """Clearance of the footprint at a pose from what moves, `ahead` s from now, m."""
+    ahead = min(ahead, AHEAD)
+    c = math.cos(yaw)
+    s = math.sin(yaw)
+    least = 1e9
+    for i in range(movers.shape[0]):
+        px = movers[i, 0] + movers[i, 2] * ahead
+        py = movers[i, 1] + movers[i, 3] * ahead
+        for k in range(discs.shape[0]):
+            dx = x + c * discs[k, 0] - s * discs[k, 1] - px
+            dy = y + s * discs[k, 0] + c * discs[k, 1] - py
+            least = min(least, math.hypot(dx, dy) - discs[k, 2] - RADIUS)
+    return least
 
 
 @numba.njit(cache=True, inline="always")

@@ -31,7 +31,7 @@ from momantu_skills.perception.camera.aiming import aim
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
     from momantu_skills.navigation.drive import overlooked
-    from momantu_skills.navigation.map import costmap, heights
+    from momantu_skills.navigation.map import costmap, heights, movers
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
@@ -57,6 +57,12 @@ UNDER = 0.05
 """Distance beside the base up to which nothing lies where it stands, m: one cell."""
 SLOW_NEAR = 2.5
 """Distance of slow zones whose limit manoeuvres expect, m: they are planned from not so far."""
+FORGOTTEN = 0.15
+"""How much farther around somebody who walks what was seen is forgotten, m: swinging arms."""
+PREDICTIONS = (0.4, 0.8)
+"""When the collision guard expects people at their predicted places, s from now."""
+PREDICTED = 12
+"""Points around each such place."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -117,6 +123,7 @@ class Vehicle:
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
         self._hits = np.zeros((0, 2))
+        self._movers = movers.Movers()
         self._overlooked = overlooked.Overlooked()
         self.blind = 0.0
         self.blocked_for = 0.0
@@ -176,9 +183,37 @@ class Vehicle:
         if len(self._earlier):
             self._lay_earlier(pose)
         self.costmap.see_laser(pose, rays)
+        self._follow_movers(scan.stamp, rays)
         if depth and self._look_due(pose):
             self._see_depth(pose, float(self._base_from_laser.position[2]))
         self.costmap.refresh(pose)
+
+    def _follow_movers(self, stamp: float, rays: Rays) -> None:
+        """Tell the costmap what moves; where that was, nothing is any more."""
+        self._movers.see(stamp, self.odom_from_base(), rays)
+        moving, left = self._movers.moving(stamp), self._movers.left
+        if not len(moving) and not left:
+            self.costmap.movers = moving
+            return
+        c, s = math.cos(self.map_from_odom().yaw), math.sin(self.map_from_odom().yaw)
+        turned = moving[:, 2:] @ np.array([[c, s], [-s, c]])
+        places = _moved(self.map_from_odom(), moving[:, :2])
+        self.costmap.movers = np.column_stack([places, turned])
+        gone = _moved(self.map_from_odom(), np.array(left).reshape(-1, 2))
+        self.costmap.forget(np.vstack([gone, places]), movers.RADIUS + FORGOTTEN)
+
+    def _predicted(self) -> Array:
+        """Points (n, 2), base frame, around where what moves will be within a second."""
+        moving = self.costmap.movers
+        pose = self.pose()
+        if not len(moving):
+            return np.zeros((0, 2))
+        turns = np.arange(PREDICTED) * (2.0 * math.pi / PREDICTED)
+        ring = movers.RADIUS * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        at = [moving[:, :2] + moving[:, 2:] * t for t in PREDICTIONS]
+        points = (np.concatenate(at)[:, None, :] + ring).reshape(-1, 2)
+        own = pose.inverse()
+        return _moved(own, points)
 
     def _lay_earlier(self, pose: Pose2D) -> None:
         """Mark the low things that earlier pictures showed; none lies where the base stands."""
@@ -252,8 +287,9 @@ class Vehicle:
         load nothing that stands at their height.
         """
         command, speed = (linear, angular, lateral), self.speed()
-        also = self._overlooked.near(self.odom_from_base(), guard.NEAR)
-        hits = np.vstack([self._hits, also])
+        hits = np.vstack([self._hits, self._overlooked.near(self.odom_from_base(), guard.NEAR)])
+        if len(self.costmap.movers):
+            hits = np.vstack([hits, self._predicted()])
         share = guard.safe_share(command, speed, self._limits, self.base_discs, hits)
         if share > 0.0:
             share = min(share, self._body.share(command, speed))

@@ -39,6 +39,8 @@ class Costmap:
     of what is known with zones and without. preferred: cost factors (rows, columns) of the planner;
     None without preferred zones. frame: (x, y, resolution) of the grid, as the compiled kernels
     take it. looked: where the base stood at the newest depth picture; None before the first.
+    movers: what moves, as rows of x, y, m, and of its velocity along both, m/s; it is no part of
+    `field`.
     """
 
     def __init__(
@@ -66,6 +68,7 @@ class Costmap:
             self.known_field = np.minimum(field, np.float32(FAR))
         self.preferred = self.zones.factors(grid, config.planner.preferred)
         self.field = self.known_field.copy()
+        self.movers = np.zeros((0, 4))
         self.looked: Pose2D | None = None
 
     def clear(self, where: NDArray[np.bool_] | None = None) -> None:
@@ -111,6 +114,20 @@ class Costmap:
             self._config.laser_reach,
             self._config.known_reach,
         )
+
+    def forget(self, places: Array, radius: float) -> None:
+        """Clear what was seen within `radius` m of points (n, 2): it moves, or has gone."""
+        reach = math.ceil(radius / self.frame[2])
+        rows, columns = self.known.shape
+        for x, y in places:
+            row, column = self.grid.index(float(x), float(y))
+            square = _square(row, column, reach, rows, columns)
+            r, c = np.mgrid[square]
+            off_x = self.frame[0] + (c + 0.5) * self.frame[2] - x
+            off_y = self.frame[1] + (r + 0.5) * self.frame[2] - y
+            near = np.hypot(off_x, off_y) <= radius
+            self._laser[square][near] = 0
+            self._depth[square][near] = 0
 
     def see_depth(self, obstacles: Array, floor: Array, laser: float = 0.0) -> None:
         """Mark cells with obstacle points (n, 3); clear those with floor points (m, 2).

@@ -108,9 +108,10 @@ def look_of(body: Body) -> Any:
 
 def _physics(body: Body) -> Any:
     physx = sapien.physx
-    component = (
-        physx.PhysxRigidStaticComponent() if body.static else physx.PhysxRigidDynamicComponent()
-    )
+    fixed = body.static and not body.kinematic
+    component = physx.PhysxRigidStaticComponent() if fixed else physx.PhysxRigidDynamicComponent()
+    if body.kinematic:
+        component.kinematic = True
     material = physx.PhysxMaterial(body.friction, body.friction, 0.0)
     colliding = [part for part in body.parts if part.collision]
     total = 0.0 if body.static else sum(volume(part.geometry) for part in colliding)

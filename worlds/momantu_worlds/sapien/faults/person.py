@@ -9,7 +9,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_worlds.sapien.faults.floor_space import walls_between
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.scenes.catalogue.furniture import furniture, usual_size
+from momantu_worlds.scenes.catalogue.person import DEPTH, person_body
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.prisms import body_prism
 
@@ -54,9 +54,9 @@ class PersonInWay:
         """A figure that faces the robot; behind the robot while that backs up."""
         backwards = self._stage.simulator.robot.base.linear < 0.0
         heading = Pose2D(0.0, 0.0, turn + (math.pi if backwards else 0.0))
-        away = Pose2D(distance + usual_size("figure")[0] / 2, 0.0, math.pi)
+        away = Pose2D(distance + DEPTH / 2, 0.0, math.pi)
         pose = self._stage.base() @ heading @ away
-        return Body("person", "figure", pose.transform(), furniture("figure"))
+        return person_body("person", pose)
 
     def _clear(self, figure: Body) -> bool:
         prism = body_prism(figure, figure.map_from_body)

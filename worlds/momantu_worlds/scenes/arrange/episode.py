@@ -22,6 +22,7 @@ from momantu_worlds.scenes.file.values import transform
 from momantu_worlds.scenes.file.walls import LEAF
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.bodies import (
+    Actor,
     Body,
     BodyTop,
     Box,
@@ -60,6 +61,10 @@ def build(world: WorldFile, layout: Layout, site: Site) -> Episode:
         goals_place=world.goal_place,
         doorways=MappingProxyType(
             {name: Gap(door.at, door.clear) for name, door in world.all_doorways.items()}
+        ),
+        actors=tuple(
+            Actor(name, note.stops, note.speed, note.pause, note.group, note.color)
+            for name, note in world.actors.items()
         ),
     )
 

@@ -14,7 +14,17 @@ from momantu_bt.descriptions.validation import checked
 from momantu_worlds.scenes.file.references import dangling
 from momantu_worlds.scenes.file.world import WorldFile
 
-SECTIONS = ("rooms", "doors", "doorways", "tables", "furniture", "objects", "tags", "bodies")
+SECTIONS = (
+    "rooms",
+    "doors",
+    "doorways",
+    "tables",
+    "furniture",
+    "objects",
+    "tags",
+    "bodies",
+    "actors",
+)
 """Parts of a world file whose keys are names."""
 
 

@@ -49,6 +49,7 @@ def _twice(world: WorldFile) -> Iterator[KeyMessage]:
         "bodies": ("body", world.bodies),
         "objects": ("object", world.objects),
         "tags": ("tag", world.tags),
+        "actors": ("actor", world.actors),
     }
     for section, (what, names) in sections.items():
         found += [((section, name), name, what) for name in names]

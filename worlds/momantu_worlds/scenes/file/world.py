@@ -11,6 +11,7 @@ from pydantic import Field, PrivateAttr
 from momantu_bt.descriptions.goal import GoalDemand, GoalDemands, demands
 from momantu_bt.formats.maps import picture_file
 from momantu_bt.geometry import Pose2D
+from momantu_worlds.scenes.file.actors import ActorNote
 from momantu_worlds.scenes.file.bodies import BodyNote
 from momantu_worlds.scenes.file.building import (
     MOST_DOORS,
@@ -28,6 +29,7 @@ from momantu_worlds.scenes.file.values import Name, Part
 from momantu_worlds.scenes.file.variation import Light, Start, Unknown
 from momantu_worlds.scenes.file.walls import RoomWalls, WallRun, given_runs
 
+MOST_ACTORS = 20
 MOST_PIECES, MOST_TABLES, MOST_OBJECTS, MOST_TAGS, MOST_BODIES = 1000, 100, 200, 100, 2000
 
 
@@ -50,6 +52,7 @@ class WorldFile(Part):
     distractors: Distractors | None = None
     furniture: Annotated[dict[Name, Piece], Field(max_length=MOST_PIECES)] = {}
     bodies: Annotated[dict[Name, BodyNote], Field(max_length=MOST_BODIES)] = {}
+    actors: Annotated[dict[Name, ActorNote], Field(max_length=MOST_ACTORS)] = {}
     start: Start
     unknown: Unknown | None = None
     light: Light = Light()

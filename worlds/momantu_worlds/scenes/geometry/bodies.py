@@ -116,7 +116,8 @@ class Body:
     name: unique in the episode. category: "can", "bottle", "table", "wall" … static: it never
     moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
     friction: coefficient, static and dynamic alike. top: the surface on which objects stand; None:
-    the upper faces of its boxes.
+    the upper faces of its boxes. kinematic: physics does not move it, but the world does; it counts
+    as static for all who ask what may be pushed.
     """
 
     name: str
@@ -127,6 +128,23 @@ class Body:
     mass: float = 0.0
     friction: float = 0.6
     top: BodyTop | None = None
+    kinematic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """Somebody who walks between stops.
+
+    stops: (x, y) in the map, m. speed, pause: the least and the most, m/s and s; each way and each
+    stop draws its own. group: how many people walk one behind the other. color: of the clothes.
+    """
+
+    name: str
+    stops: tuple[tuple[float, float], ...]
+    speed: tuple[float, float]
+    pause: tuple[float, float]
+    group: int = 1
+    color: Color = GREY
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +204,7 @@ class Episode:
 
     start: the true pose of the robot's base at the start. ambient: light from all directions.
     site: what the robot is told. goals: what the referee demands. goals_place: where that is
-    written. doorways: by name.
+    written. doorways: by name. actors: who walks about; their bodies are not among `bodies`.
     """
 
     name: str
@@ -200,6 +218,7 @@ class Episode:
     goals: tuple[Goal, ...] = ()
     doorways: Mapping[str, Gap] = field(default_factory=lambda: MappingProxyType({}))
     goals_place: str = ""
+    actors: tuple[Actor, ...] = ()
 
     @property
     def goal(self) -> Goal | None:

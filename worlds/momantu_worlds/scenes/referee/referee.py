@@ -20,6 +20,7 @@ from momantu_worlds.scenes.referee.demand import ItemDemand, degrees, moved, til
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.incidents import Incidents
+from momantu_worlds.scenes.referee.people import PushedPeople
 
 
 @dataclass(slots=True)
@@ -38,8 +39,17 @@ class Peak:
 class Referee:
     """Judges one episode; the module's docstring lists the criteria."""
 
-    def __init__(self, episode: Episode, truth: GroundTruth, hand: Hand) -> None:
-        """Watch from the next tick on. Without a goal, it only reports dangerous events."""
+    def __init__(
+        self,
+        episode: Episode,
+        truth: GroundTruth,
+        hand: Hand,
+        people: frozenset[str] = frozenset(),
+    ) -> None:
+        """Watch from the next tick on. Without a goal, it only reports dangerous events.
+
+        people: names of bodies that are people.
+        """
         self._place, self._truth, self._gripper = episode.goals_place, truth, hand.gripper
         self._demands = [ItemDemand(episode, goal, truth) for goal in episode.goals]
         self._items = frozenset(goal.item for goal in episode.goals)
@@ -52,6 +62,7 @@ class Referee:
         self._shift, self._tilt, self._bump = Peak(), Peak(), Peak()
         self._now = 0.0
         self._incidents = Incidents(episode, truth, hand)
+        self._people = PushedPeople(truth, people) if people else None
         truth.watch_contacts()
 
     def observe(self, now: float) -> None:
@@ -60,6 +71,8 @@ class Referee:
         contacts = tuple(self._truth.contacts())
         touching = self._look_at_contacts(contacts)
         self._incidents.observe(now, contacts)
+        if self._people is not None:
+            self._people.observe(now, contacts)
         for demand in self._demands:
             demand.observe(now, frozenset(touching[demand.goal.item]))
         for name, before in self._others.items():
@@ -106,6 +119,10 @@ class Referee:
         sentences += self._of_the_whole_run([demand.goal for demand in self._demands])
         success = not sentences if demands else None
         incidents = self._incidents.until(self._now)
+        if self._people is not None:
+            told |= {"person_pushed": self._people.pushed, "person_met": self._people.met}
+            found = (*incidents, *self._people.incidents())
+            incidents = tuple(sorted(found, key=lambda incident: incident.time))
         return Verdict(
             success,
             tuple(sentences),
