@@ -41,6 +41,9 @@ class Service:
     publishes: names and types of the keys that trees can read as `$@<service>.<key>`.
     needs: services that this one uses; they start and update before it. senses: kinds of sensors
     that the robot must have, such as `laser`; without one of them the run does not start.
+    replaces: services whose place it takes in a run that has it: who needs or reads one of them
+    gets this one, which offers and publishes what they do. charts: it makes the run's map itself,
+    so the run is told neither a floor plan nor what lies on one.
     An exception in a service ends the run: the robot must not go on without it.
     """
 
@@ -48,6 +51,8 @@ class Service:
     publishes: ClassVar[Mapping[str, type]] = {}
     needs: ClassVar[tuple[str, ...]] = ()
     senses: ClassVar[tuple[str, ...]] = ()
+    replaces: ClassVar[tuple[str, ...]] = ()
+    charts: ClassVar[bool] = False
 
     def start(self, context: ServiceContext) -> None:
         """Called once, before the first update."""

@@ -315,6 +315,8 @@ class Session:
                 needed = in_order([name], self._registry.services.__getitem__)
             except (KeyError, PluginError):
                 continue  # a skill that needs it says so when it is called
+            if any(kind.replaces for kind in needed.values()):
+                continue  # it would take the place of another one without having been asked for
             if all(having.issuperset(kind.senses) for kind in needed.values()):
                 found.append(name)
         return found
@@ -334,6 +336,11 @@ class Session:
             check_sensors(fresh, self.robot.description)
             check_parameters(fresh, self.site)
         for name, kind in fresh.items():
+            if kind.replaces or kind.charts:
+                raise SessionError(
+                    f"the service {name!r} takes the place of {', '.join(kind.replaces)}, which a "
+                    "session runs from its start; run a tree with momantu_bt.run instead"
+                )
             running.add(name, made(name, kind))
 
     def _guarded(self, step: Callable[[], T]) -> T:

@@ -88,6 +88,11 @@ class Surfaces(Mapping[str, Surface]):
         self._now[name] = surface
         self.corrections += 1
 
+    def teach(self, name: str, surface: Surface) -> None:
+        """Add a surface that was not told, or replace one that was."""
+        self._told[name] = self._now[name] = surface
+        self.corrections += 1
+
     def __getitem__(self, name: str) -> Surface:
         """The surface as believed now."""
         return self._now[name]
@@ -101,17 +106,40 @@ class Surfaces(Mapping[str, Surface]):
         return len(self._told)
 
 
+class Places(Mapping[str, Pose2D]):
+    """A site's places in one run: those that were told, and those that the robot was taught."""
+
+    def __init__(self, told: Mapping[str, Pose2D]) -> None:
+        self._poses = dict(told)
+
+    def teach(self, name: str, map_from_base: Pose2D) -> None:
+        """Add a place, or move one."""
+        self._poses[name] = map_from_base
+
+    def __getitem__(self, name: str) -> Pose2D:
+        """Where the base stands there."""
+        return self._poses[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """The names: first those that were told."""
+        return iter(self._poses)
+
+    def __len__(self) -> int:
+        """How many there are."""
+        return len(self._poses)
+
+
 @dataclass(frozen=True, slots=True)
 class Site:
     """Everything that the robot is told about its surroundings.
 
     map_file: the floor plan, in map_server's YAML format. overhang_file: a map in the same format
     of known furniture that the laser's plane misses. start: the robot's approximate start pose in
-    the map; start_sigma: its standard deviations (m, rad). surfaces: in a run a `Surfaces`, which
-    skills correct. tags: AprilTags and bundles of them, by name. services: parameters of services
-    and skills, by name. area: the least x and y and the largest x and y of the floor plan, m; None
-    if they are not known. zones: parts of the floor to keep out of, to drive slowly in, or to
-    prefer, by name.
+    the map; start_sigma: its standard deviations (m, rad). places, surfaces: in a run a `Places`
+    and a `Surfaces`, which skills correct, and to which they add what they are taught. tags:
+    AprilTags and bundles of them, by name. services: parameters of services and skills, by name.
+    area: the least x and y and the largest x and y of the floor plan, m; None if they are not
+    known. zones: parts of the floor to keep out of, to drive slowly in, or to prefer, by name.
     """
 
     name: str
@@ -131,9 +159,25 @@ class Site:
         """Names of places and surfaces."""
         return (*self.places, *self.surfaces)
 
+    def uncharted(self) -> Site:
+        """The same for a robot that makes its map itself.
+
+        It is told where it starts, of tags by their numbers, and of objects; not what lies where.
+        """
+        tags = {name: replace(tag, map_from_bundle=None) for name, tag in self.tags.items()}
+        return replace(
+            self,
+            map_file=None,
+            overhang_file=None,
+            places=Places({}),
+            surfaces=Surfaces({}),
+            tags=MappingProxyType(tags),
+            area=None,
+        )
+
     def of_a_run(self) -> Site:
         """The same for one run, whose skills may correct where a surface stands."""
-        return replace(self, surfaces=Surfaces(self.surfaces))
+        return replace(self, places=Places(self.places), surfaces=Surfaces(self.surfaces))
 
 
 @dataclass(frozen=True, slots=True)

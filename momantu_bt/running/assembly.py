@@ -14,7 +14,7 @@ from momantu_bt.engine.events import Events
 from momantu_bt.engine.executor import Executor, Stepper
 from momantu_bt.engine.skills.actuators import Actuators
 from momantu_bt.engine.skills.body import Body
-from momantu_bt.engine.skills.services import Services
+from momantu_bt.engine.skills.services import Services, each_once
 from momantu_bt.engine.watchdog import Watchdog
 from momantu_bt.errors import PLUGIN_ERRORS, words_of
 from momantu_bt.faults.stage import Stage
@@ -63,10 +63,12 @@ def set_up(
     if stage.robot is None or stage.site is None:
         return Setting(context, Services({}, None), stage, stepper)
     actuators = Actuators(stage.robot, events)
-    services = Services({name: made(name, kind) for name, kind in needed.items()}, actuators)
+    services = Services(each_once(needed, made), actuators)
     frames = FrameBuffer(stage.robot.description.kinematics())
     callable_skills = {name: stage.skill(kind) for name, kind in called.items()}
     site = stage.site.of_a_run()
+    if any(kind.charts for kind in needed.values()):
+        site = site.uncharted()
     context.body = Body(actuators, frames, site, services.running, callable_skills)
     return Setting(context, services, stage, stepper)
 

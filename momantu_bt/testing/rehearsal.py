@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from momantu_bt.engine.encode import encode
-from momantu_bt.engine.skills.services import ServiceCycleError, in_order
+from momantu_bt.engine.skills.services import ServiceCycleError, each_once, in_order
 from momantu_bt.engine.skills.session import Session
 from momantu_bt.engine.status import RUNNING
 from momantu_bt.errors import PLUGIN_ERRORS, words_of
@@ -230,7 +230,7 @@ class Rehearsals:
     def _services(self) -> dict[str, Any]:
         try:
             ordered = in_order(self._needs(), self._registry.services.__getitem__)
-            return {name: kind() for name, kind in ordered.items()}
+            return dict(each_once(ordered, lambda _, kind: kind()))
         except KeyError as error:
             raise CannotRehearse(f"no service {error} is installed; {_GIVE}") from None
         except (PluginError, ServiceCycleError) as error:

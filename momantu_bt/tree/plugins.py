@@ -53,7 +53,8 @@ def service_objection(name: str, plugin: Any) -> str | None:
             return f"{said}.publishes: {type_!r} of {key!r} is not a type"
     if plugin.publishes and plugin.published is Service.published:
         return f"{said} declares keys in `publishes` and has no published()"
-    return _names(said, "needs", plugin.needs) or _names(said, "senses", plugin.senses)
+    listed = {name: getattr(plugin, name) for name in ("needs", "senses", "replaces")}
+    return next(filter(None, (_names(said, name, value) for name, value in listed.items())), None)
 
 
 def _names(said: str, what: str, value: Any) -> str | None:

@@ -14,7 +14,7 @@ from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Pose, Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import CAMERA_CARRIER, Robot, Working
-from momantu_bt.service import Localization
+from momantu_bt.service import Localization, offers
 from momantu_bt.skill import Failure, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_bt.world import Surface
@@ -22,6 +22,7 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.confidence import estimate
+from momantu_skills.navigation.map.own import OwnMap
 from momantu_skills.navigation.plan.goals import Stand, before_surface, surface_at, within_reach
 
 with lazily():
@@ -112,6 +113,8 @@ class Navigate(Skill):
         if failure is not None and failure.code == "NOT_LOCALIZED":
             return estimate(self.localization)
         if self._going is None or self._going.chosen is None:
+            return None
+        if self.within_reach_of is None and offers(self.localization, OwnMap):
             return None
         if failure is None and self.within_reach_of is not None:
             target, stand = self.within_reach_of, self._going.chosen

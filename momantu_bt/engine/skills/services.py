@@ -53,11 +53,41 @@ def in_order(names: Iterable[str], service_of: ServiceFinder) -> dict[str, type[
 
     for name in names:
         visit(name, ())
-    return found
+    return _replaced(found)
+
+
+def _replaced(found: Mapping[str, type[Service]]) -> dict[str, type[Service]]:
+    """The same, with the class of the replacing service under each name that it replaces.
+
+    It comes before the first service that it replaces, and so before those that need that one.
+    """
+    taker = {old: name for name, kind in found.items() for old in kind.replaces}
+    kinds: dict[str, type[Service]] = {}
+    for name, kind in found.items():
+        if name in taker:
+            kinds.setdefault(taker[name], found[taker[name]])
+            kinds[name] = found[taker[name]]
+        else:
+            kinds.setdefault(name, kind)
+    return kinds
+
+
+def each_once(
+    kinds: Mapping[str, type[Service]], make: Callable[[str, type[Service]], Service]
+) -> dict[str, Service]:
+    """The services of `in_order`, made; one that replaces others has all their names."""
+    services: dict[str, Service] = {}
+    for name, kind in kinds.items():
+        same = next((s for other, s in services.items() if name in kinds[other].replaces), None)
+        services[name] = same or make(name, kind)
+    return services
 
 
 class Services:
-    """The running services by name, in their order. They see the robot but cannot command it."""
+    """The running services by name, in their order. They see the robot but cannot command it.
+
+    One that replaces others has their names too; it starts and is updated under its own, the first.
+    """
 
     def __init__(self, running: Mapping[str, Service], actuators: Actuators | None) -> None:
         self.running = dict(running)
@@ -83,7 +113,7 @@ class Services:
         other: Callable[[str], Any] | None = None,
     ) -> None:
         """Start each that is not started yet, its needs first. other: how they find each other."""
-        for name, service in self.running.items():
+        for name, service in self._own():
             if name in self._started:
                 continue
             self._started.add(name)
@@ -101,12 +131,20 @@ class Services:
 
     def update(self, now: float) -> None:
         """Update those whose time has come; the first time, all."""
-        for name, service in self.running.items():
+        for name, service in self._own():
             due = self._due.get(name, now)
             if now >= due - CLOCK_SLACK:
                 self._due[name] = max(due + 1.0 / service.rate, now)
                 with _told(name, service, "update"):
                     service.update(self._robots[name], now)
+
+    def _own(self) -> Iterator[tuple[str, Service]]:
+        """Each service once, with its own name."""
+        seen = set[int]()
+        for name, service in self.running.items():
+            if id(service) not in seen:
+                seen.add(id(service))
+                yield name, service
 
     def published(self, name: str) -> Mapping[str, Any]:
         """The current values of a service's keys."""

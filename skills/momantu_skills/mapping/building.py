@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.formats.maps import MapPicture
 from momantu_bt.geometry import Pose2D
-from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.logs.log import LoggedScan
-from momantu_skills.mapping.mapper import Mapper
 from momantu_skills.mapping.occupancy import floor_plan
 from momantu_skills.mapping.results import report_of
+from momantu_skills.mapping.survey import Survey
 
 FEWEST = 2
 """Fewest scans of a map."""
-MATCHED_EVERY = 0.1
-"""The base must have driven this, m, or turned by as much, rad, since the last scan in use."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,35 +36,21 @@ def build(
     progress: told how many scans are done and how many loops are closed; if it returns True, the
     mapping ends there.
     """
-    config = MappingConfig()
-    mapper, used = Mapper(config), list[LoggedScan]()
-    done = 0
-    for done, scan in enumerate(scans, 1):
-        if not used or _moved(used[-1], scan):
-            mapper.add(scan.odom_from_base, scan.rays)
-            used.append(scan)
-        if progress(done, len(mapper.loops)):
+    survey = Survey()
+    for scan in scans:
+        survey.add(scan)
+        if progress(len(survey.read), len(survey.mapper.loops)):
             break
-    mapper.finish()
-    placed = [(pose, scan.rays) for pose, scan in zip(mapper.poses, used, strict=True)]
-    plan = floor_plan(placed, resolution, config.longest)
-    report = {"scans_read": done, **report_of(plan, mapper.poses, len(mapper.loops))}
-    read = scans[:done]
-    poses = tuple(_all_poses(read, used, mapper.poses))
-    return Built(plan, tuple(scan.stamp for scan in read), poses, report, done < len(scans))
+    return built_of(survey, resolution, interrupted=len(survey.read) < len(scans))
 
 
-def _all_poses(
-    read: Sequence[LoggedScan], used: Sequence[LoggedScan], poses: Sequence[Pose2D]
-) -> Iterator[Pose2D]:
-    """The pose of each scan: those that were not used are a step of odometry from the last used."""
-    at = -1
-    for scan in read:
-        if at + 1 < len(used) and scan is used[at + 1]:
-            at += 1
-        yield poses[at] @ (used[at].odom_from_base.inverse() @ scan.odom_from_base)
-
-
-def _moved(last: LoggedScan, scan: LoggedScan) -> bool:
-    step = last.odom_from_base.inverse() @ scan.odom_from_base
-    return abs(step.x) + abs(step.y) + abs(step.yaw) > MATCHED_EVERY
+def built_of(
+    survey: Survey, resolution: float, *, interrupted: bool = False, stands: float = 0.0
+) -> Built:
+    """The map of a survey, which can go on. stands: radius of the base, m, if it is known."""
+    ended = survey.finished()
+    mapper = ended.mapper
+    plan = floor_plan(ended.placed(), resolution, mapper.config.longest, stands)
+    report = report_of(plan, mapper.poses, len(mapper.loops))
+    stamps, poses = zip(*ended.trajectory(), strict=True)
+    return Built(plan, stamps, poses, {"scans_read": len(survey.read), **report}, interrupted)

@@ -13,6 +13,7 @@ from momantu_skills.mapping import pose_graph
 from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.loops import SEEN_FROM, Loop, distance, find_loop
 from momantu_skills.mapping.pose_graph import Match
+from momantu_skills.mapping.poses import ORIGIN
 from momantu_skills.mapping.scan import ScanPoints
 from momantu_skills.mapping.submap import Growing, Submap
 from momantu_skills.mapping.tracking import Tracked, track
@@ -45,10 +46,14 @@ class _Open:
 class Mapper:
     """Makes a map of scans that come one after the other. Two submaps grow at a time."""
 
-    def __init__(self, config: MappingConfig | None = None) -> None:
+    def __init__(self, config: MappingConfig | None = None, start: Pose2D = ORIGIN) -> None:
+        """Start without a scan. start: `map_from_base` of the first one, which fixes the map."""
         self.config = config or MappingConfig()
         self.poses: list[Pose2D] = []
-        """`map_from_base` of each scan; the first is the map's origin."""
+        """`map_from_base` of each scan."""
+        self.revision = 0
+        """How often the poses of earlier scans were changed."""
+        self._start = start
         self.loops: list[Loop] = []
         self._odometry: list[Pose2D] = []
         self._motions: list[Pose2D] = []
@@ -67,7 +72,7 @@ class Mapper:
         scan = ScanPoints.from_rays(rays, self.config.longest)
         if not self.poses:
             tracked = Tracked(Pose2D(0.0, 0.0), NEW, 1.0)
-            self.poses.append(tracked.pose)
+            self.poses.append(self._start)
             self._begin(scan)
         else:
             motion = self._odometry[-1].inverse() @ odom_from_base
@@ -167,6 +172,7 @@ class Mapper:
             self.poses, self._origins, self._motions, self._matches, self.loops, self.config
         )
         self._optimised, self._waiting = len(self.poses), 0
+        self.revision += 1
 
     def finish(self) -> None:
         """Finish all submaps, look for loops between neighbours, and optimise for the last time."""

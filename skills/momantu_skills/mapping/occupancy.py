@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.errors import InputError
-from momantu_bt.formats.maps import MapPicture
+from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN, MapPicture
 from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.messages import frozen
 from momantu_skills.mapping.poses import moved
+from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
 BORDER = 1.0
@@ -24,40 +26,114 @@ BLACK, GREY, WHITE = 0, 205, 254
 """map_server's grey levels of occupied, unknown and free cells."""
 
 
+class Occupancy:
+    """Beams counted on a raster that grows with what is seen.
+
+    resolution: m per cell. longest: longer ranges are left out, m. step: by how much the raster
+    grows, m.
+    """
+
+    def __init__(self, resolution: float, longest: float, step: float) -> None:
+        self.resolution, self._longest, self._step = resolution, longest, step
+        self._low = self._high = np.zeros(2)
+        self._passed = self._hit = np.zeros((0, 0), np.int32)
+
+    def add(self, scans: Iterable[tuple[Pose2D, Rays]], stands: float = 0.0) -> None:
+        """Count the beams of scans at `map_from_base`, each with its rays in base.
+
+        A beam that hit nothing says nothing. stands: radius of the base, m: the floor below it is
+        free.
+        """
+        origins, ends, bases = self._beams(scans)
+        self._cover(np.vstack([origins, ends, bases]))
+        scale = 1.0 / self.resolution
+        _cast(self._passed, self._hit, (origins - self._low) * scale, (ends - self._low) * scale)
+        if stands:
+            self._stand((bases - self._low) * scale, stands * scale)
+
+    def forget(self) -> None:
+        """Count from nothing again, on the same raster."""
+        self._passed[:] = 0
+        self._hit[:] = 0
+
+    def grid(self) -> GridMap:
+        """The floor plan so far; its cells do not change any more."""
+        origin = (float(self._low[0]), float(self._low[1]))
+        cells = np.full(self._hit.shape, UNKNOWN, np.uint8)
+        cells[self._passed + self._hit > 0] = FREE
+        cells[self._occupied()] = OCCUPIED
+        return GridMap(frozen(cells), self.resolution, origin)
+
+    def picture(self) -> MapPicture:
+        """The floor plan as map_server has it.
+
+        Raises:
+            InputError: no beam hit anything.
+        """
+        if not self._hit.any():
+            raise InputError(
+                f"no beam hit anything within {self._longest:g} m: there is nothing to map"
+            )
+        grid = self.grid()
+        levels = np.array([WHITE, BLACK, GREY], np.uint8)[grid.cells]
+        return MapPicture(levels[::-1], self.resolution, grid.origin, brightest=255)
+
+    def _occupied(self) -> NDArray[np.bool_]:
+        return np.asarray(self._hit >= np.maximum(1, HIT_SHARE * (self._hit + self._passed)))
+
+    def _beams(self, scans: Iterable[tuple[Pose2D, Rays]]) -> tuple[Array, Array, Array]:
+        """Where beams begin and end, and where bases stand, (n, 2) each, in the map."""
+        origins, ends, bases = ([np.empty((0, 2))] for _ in range(3))
+        for pose, rays in scans:
+            near = rays.hit & (rays.ranges <= self._longest)
+            points = rays.origin + rays.directions[near] * rays.ranges[near, None]
+            ends.append(moved(points, pose))
+            origins.append(np.repeat(moved(rays.origin[None], pose), len(points), axis=0))
+            bases.append(np.array([[pose.x, pose.y]]))
+        return np.vstack(origins), np.vstack(ends), np.vstack(bases)
+
+    def _cover(self, points: Array) -> None:
+        """Grow the raster so that points (n, 2) lie on it, with a border around them."""
+        if not len(points):
+            return
+        low = np.floor((points.min(axis=0) - BORDER) / self._step) * self._step
+        high = np.ceil((points.max(axis=0) + BORDER) / self._step) * self._step
+        if self._hit.size:
+            low, high = np.minimum(low, self._low), np.maximum(high, self._high)
+            if (low == self._low).all() and (high == self._high).all():
+                return
+        columns, rows = np.rint((high - low) / self.resolution).astype(int)
+        column, row = np.rint((self._low - low) / self.resolution).astype(int)
+        old = self._passed, self._hit
+        self._passed, self._hit = np.zeros((2, rows, columns), np.int32)
+        if old[0].size:
+            window = slice(row, row + old[0].shape[0]), slice(column, column + old[0].shape[1])
+            self._passed[window], self._hit[window] = old
+        self._low, self._high = low, high
+
+    def _stand(self, bases: Array, radius: float) -> None:
+        """Count the cells of discs as passed; cells as units."""
+        reach = np.arange(-math.ceil(radius), math.ceil(radius) + 1)
+        across, along = (part.ravel() for part in np.meshgrid(reach, reach))
+        for x, y in np.floor(bases).astype(int):
+            columns, rows = x + across, y + along
+            below = np.hypot(across, along) <= radius
+            self._passed[rows[below], columns[below]] += 1
+
+
 def floor_plan(
-    scans: Iterable[tuple[Pose2D, Rays]], resolution: float, longest: float
+    scans: Iterable[tuple[Pose2D, Rays]], resolution: float, longest: float, stands: float = 0.0
 ) -> MapPicture:
     """The map of scans at `map_from_base`, each with its rays in base; ranges up to `longest` m.
 
-    A beam that hit nothing says nothing.
+    A beam that hit nothing says nothing. stands: see `Occupancy.add`.
 
     Raises:
         InputError: no beam hit anything.
     """
-    origins, ends = _beams(scans, longest)
-    if not len(ends):
-        raise InputError(f"no beam hit anything within {longest:g} m: there is nothing to map")
-    low = np.floor((np.vstack([origins, ends]).min(axis=0) - BORDER) / resolution) * resolution
-    high = np.vstack([origins, ends]).max(axis=0) + BORDER
-    columns, rows = (math.ceil(size) for size in (high - low) / resolution)
-    passed, hit = np.zeros((rows, columns), np.int32), np.zeros((rows, columns), np.int32)
-    _cast(passed, hit, (origins - low) / resolution, (ends - low) / resolution)
-    occupied = hit >= np.maximum(1, HIT_SHARE * (hit + passed))
-    levels = np.where(occupied, BLACK, np.where(passed + hit > 0, WHITE, GREY))
-    return MapPicture(
-        levels.astype(np.uint8)[::-1], resolution, (float(low[0]), float(low[1])), brightest=255
-    )
-
-
-def _beams(scans: Iterable[tuple[Pose2D, Rays]], longest: float) -> tuple[Array, Array]:
-    """Where beams begin and end, (n, 2) each, in the map."""
-    origins, ends = [np.empty((0, 2))], [np.empty((0, 2))]
-    for pose, rays in scans:
-        near = rays.hit & (rays.ranges <= longest)
-        points = rays.origin + rays.directions[near] * rays.ranges[near, None]
-        ends.append(moved(points, pose))
-        origins.append(np.repeat(moved(rays.origin[None], pose), len(points), axis=0))
-    return np.vstack(origins), np.vstack(ends)
+    counts = Occupancy(resolution, longest, resolution)
+    counts.add(scans, stands)
+    return counts.picture()
 
 
 @numba.njit(cache=True)

@@ -8,6 +8,8 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
 
+ORIGIN = Pose2D(0.0, 0.0)
+
 
 def as_array(pose: Pose2D) -> Array:
     """(x, y, yaw)."""

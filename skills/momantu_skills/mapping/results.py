@@ -6,6 +6,8 @@ import io
 import itertools
 import json
 import math
+import os
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,27 +19,36 @@ from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
+from momantu_bt.site_file import Names
 
 with lazily():
     from PIL import Image, ImageDraw
 
 MAP, PICTURE, TRAJECTORY, REPORT = "map.yaml", "map.png", "trajectory.tum", "report.json"
+NAMES = "site.yaml"
+FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES}
 _WAY = (200, 60, 40)
 _START, _END = (40, 140, 60), (40, 80, 200)
 _LEAST_EDGE = 800
 """Pixels of the picture's longer side; small maps are drawn larger."""
 
 
-def check_folder(folder: Path) -> None:
+def check_folder(folder: Path, *, replace: bool = False) -> None:
     """Check that a map can be written into a folder: it is empty, or there is none yet.
+
+    replace: it may also hold a map, and nothing else.
 
     Raises:
         OutputError: it holds files, or is one.
     """
-    if folder.is_dir() and any(folder.iterdir()):
-        raise OutputError(f"{folder} holds files already; choose another folder")
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder} is a file; choose a folder")
+    held = {each.name for each in folder.iterdir()} if folder.is_dir() else set[str]()
+    if held and not replace:
+        raise OutputError(f"{folder} holds files already; choose another folder")
+    if not held <= FILES:
+        other = ", ".join(sorted(held - FILES)[:3])
+        raise OutputError(f"{folder} holds other files than a map's, such as {other}")
 
 
 def write_folder(
@@ -46,16 +57,46 @@ def write_folder(
     stamps: Sequence[float],
     poses: Sequence[Pose2D],
     report: dict[str, Any],
+    names: Names | None = None,
 ) -> None:
-    """Write a map. The floor plan comes last: a folder with `map.yaml` is whole.
+    """Write a map, whole or not at all; a map that was there is replaced then.
+
+    names: what the robot was taught; by default nothing but where the map begins.
 
     Raises:
         OutputError: the folder cannot be written.
     """
-    write_whole(folder / TRAJECTORY, _trajectory(stamps, poses), folders=True)
-    write_whole(folder / PICTURE, _picture(plan, poses))
-    write_whole(folder / REPORT, json.dumps(report, indent=2) + "\n")
-    write_map(folder / MAP, plan)
+    names = names or Names(start=(poses[0].x, poses[0].y, poses[0].yaw))
+    draft = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    try:
+        draft.mkdir(parents=True)
+        write_whole(draft / TRAJECTORY, _trajectory(stamps, poses))
+        write_whole(draft / PICTURE, _picture(plan, poses))
+        write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
+        write_whole(draft / NAMES, names.text())
+        write_map(draft / MAP, plan)
+        _take_place(draft, folder)
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _take_place(draft: Path, folder: Path) -> None:
+    """Rename a whole folder; what was there under its name goes afterwards."""
+    if not folder.is_dir() or not any(folder.iterdir()):
+        draft.rename(folder)
+        return
+    old = draft.with_suffix(".old")
+    folder.rename(old)
+    try:
+        draft.rename(folder)
+    except OSError:
+        old.rename(folder)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str, Any]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from momantu_bt.engine.skills.actuators import Actuators
-from momantu_bt.engine.skills.services import ServiceCycleError, Services, in_order
+from momantu_bt.engine.skills.services import ServiceCycleError, Services, each_once, in_order
 from momantu_bt.frames import FrameBuffer
+from momantu_bt.geometry import Pose2D
 from momantu_bt.messages import BaseVelocity
 from momantu_bt.running.launch import LaunchError
 from momantu_bt.service import Service
@@ -254,3 +257,58 @@ def test_a_site_that_sets_a_service_wrongly_is_refused_before_the_run(run_yaml, 
     with pytest.raises(LaunchError) as error:
         run_yaml(tree, services={"localization": Battery}, world=world)
     assert said in str(error.value)
+
+
+def taking(*names, needs=()):
+    """A service that takes the place of others."""
+    made = kind(*needs)
+    made.replaces, made.charts = names, True
+    made.publishes = {"level": float}
+    made.published = lambda self: {"level": 2.0}
+    return made
+
+
+def test_a_service_that_replaces_another_is_under_its_name_too_and_is_made_once():
+    kinds = {"map": kind(), "user": kind("map"), "own": taking("map")}
+    for asked in (["user", "own"], ["own", "user"], ["map", "own", "user"]):
+        ordered = in_order(asked, kinds.__getitem__)
+        assert ordered["map"] is ordered["own"] is kinds["own"]
+        assert list(ordered).index("own") < list(ordered).index("user")
+        running = each_once(ordered, lambda name, made: made())
+        assert running["map"] is running["own"]
+
+
+def test_without_the_one_that_replaces_nothing_is_replaced():
+    kinds = {"map": kind(), "user": kind("map"), "own": taking("map")}
+    assert in_order(["user"], kinds.__getitem__)["map"] is kinds["map"]
+
+
+def test_it_is_updated_once_a_period_and_the_run_is_told_no_map(run_tree):
+    own = taking("localization")
+    site = scripted_site(places={"dock": Pose2D(1.0, 0.0)})
+    seen = []
+
+    class Look(Skill):
+        """Look at the service that stands for the old one."""
+
+        localization: Any = Needs()
+        own: Any = Needs()
+        failures = {}
+
+        def run(self, robot) -> Run:
+            """Note it."""
+            seen.extend([self.localization, self.own, self.site])
+            yield "look"
+
+    tree = """
+        momantu_bt: 1
+        values: {level: 0.0}
+        trees: {Main: [{look: {}}, {wait: 1 s}, {condition: $@own.level > 1}]}
+        """
+    report = run_tree(tree, skills={"look": Look}, services={"own": own}, site=site)
+    assert report.status == "SUCCESS", report.failure
+    first, second, told = seen
+    assert first is second
+    gaps = [b - a for a, b in itertools.pairwise(first.updates)]
+    assert min(gaps) > 0.04
+    assert (told.map_file, dict(told.places), dict(told.surfaces)) == (None, {}, {})

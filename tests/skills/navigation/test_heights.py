@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from momantu_skills.navigation.map.heights import taller_than
+from momantu_skills.navigation.map.believed import believed_maps
+from momantu_skills.navigation.map.heights import Tall, taller_than
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import Site, Surface
@@ -28,6 +29,10 @@ def site(tmp_path: Path) -> Site:
     return Site("corner", map_file=plan, surfaces=surfaces)
 
 
+def tall(site: Site, height: float) -> Tall:
+    return taller_than(believed_maps(site), site.surfaces.values(), height)
+
+
 @pytest.mark.parametrize(
     ("x", "y", "room"),
     [(1.6, 1.5, 0.3), (1.9, 1.5, 0.0), (1.6, 1.95, -0.05), (1.0, 0.0, 0.9), (-0.6, 0.5, -0.1)],
@@ -35,10 +40,10 @@ def site(tmp_path: Path) -> Site:
 def test_over_a_desk_a_hand_has_room_up_to_the_walls(
     site: Site, x: float, y: float, room: float
 ) -> None:
-    assert taller_than(site, 0.7).room(Pose2D(x, y), HAND) == pytest.approx(room, abs=0.03)
+    assert tall(site, 0.7).room(Pose2D(x, y), HAND) == pytest.approx(room, abs=0.03)
 
 
 def test_what_is_higher_than_the_hand_gets_is_in_its_way(site: Site) -> None:
     over_the_desk, over_the_shelf = Pose2D(1.6, 1.5), Pose2D(-0.6, 0.5)
-    assert taller_than(site, 0.5).room(over_the_desk, HAND) < 0.0
-    assert taller_than(site, 1.4).room(over_the_shelf, HAND) > 0.0
+    assert tall(site, 0.5).room(over_the_desk, HAND) < 0.0
+    assert tall(site, 1.4).room(over_the_shelf, HAND) > 0.0

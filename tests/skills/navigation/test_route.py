@@ -60,8 +60,8 @@ def test_a_route_leads_from_the_base_to_its_lead_in_with_room(
     back = goal.inverse() @ route.lead_in
     assert back.y == pytest.approx(0.0, abs=1e-9)
     assert -0.6 - 1e-9 <= back.x <= 0.0
-    assert route.to_go(base, route.lead_in) <= 2 * cell * 10
-    assert route.to_go(base, start) >= np.hypot(*(path[-1] - path[0])) - 2 * cell
+    assert route.to_go(route.lead_in) <= 2 * cell * 10
+    assert route.to_go(start) >= np.hypot(*(path[-1] - path[0])) - 2 * cell
     assert not route.crossed(base, start)
 
 
@@ -69,10 +69,10 @@ def test_to_go_falls_along_the_way_and_is_large_off_the_map(obedient: MakeObedie
     base = obedient(Pose2D(1.0, 3.0, 0.0), [TABLE])
     route = route_to(base, Pose2D(6.5, 3.0, 0.0))
     assert route is not None
-    left = [route.to_go(base, Pose2D(x, y)) for x, y in route.plan.path[::8]]
+    left = [route.to_go(Pose2D(x, y)) for x, y in route.plan.path[::8]]
     assert (np.diff(left) < 0.0).all()
-    assert route.to_go(base, Pose2D(-3.0, 3.0)) >= UNREACHED
-    assert route.to_go(base, Pose2D(1.0, 60.0)) >= UNREACHED
+    assert route.to_go(Pose2D(-3.0, 3.0)) >= UNREACHED
+    assert route.to_go(Pose2D(1.0, 60.0)) >= UNREACHED
 
 
 def test_the_heading_is_along_the_path(obedient: MakeObedient) -> None:

@@ -67,6 +67,9 @@ class Obedient:
     def show(self, path: Array) -> None:
         """Nobody watches."""
 
+    def caution(self) -> None:
+        """The map is known."""
+
     def speed(self) -> tuple[float, float, float]:
         return self.v, self.w, self.u
 

@@ -69,12 +69,12 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive
         near = pose.distance_to(route.stand) < (GLIDE_FROM if vehicle.glides else APPROACH_FROM)
         if near and approach_is_sure(vehicle, route.stand, distance):
             return
-        if route.to_go(vehicle, pose) < NEAR:
+        if route.to_go(pose) < NEAR:
             return
         if watch.replan_due(route, pose):
             route = yield from _replanned(vehicle, route, watch)
             continue
-        watch.check(route.to_go(vehicle, pose))
+        watch.check(route.to_go(pose))
         off = wrap_angle(route.heading(pose) - pose.yaw)
         turn_first = abs(off) > TURN_FIRST and abs(vehicle.speed()[0]) < 0.1
         if turn_first and (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
@@ -117,7 +117,7 @@ class _Watch:
         """Take over a new plan; count a longer path as a detour."""
         self._planned_at = self._vehicle.now()
         self._vehicle.show(route.plan.path)
-        to_go = route.to_go(self._vehicle, self._vehicle.pose())
+        to_go = route.to_go(self._vehicle.pose())
         if to_go > self._best + 1.0:
             self._detours += 1
             self._best, self._best_at = to_go, self._vehicle.now()
@@ -128,6 +128,8 @@ class _Watch:
 
     def replan_due(self, route: Route, pose: Pose2D) -> bool:
         """Return whether the plan is old, or an obstacle has appeared on its path."""
+        if not route.plan.fits(self._vehicle.costmap.grid):
+            return True
         age = self._vehicle.now() - self._planned_at
         if age > REPLAN:
             return True

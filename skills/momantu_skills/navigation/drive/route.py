@@ -35,9 +35,9 @@ class Route:
     lead_in: Pose2D
     plan: Plan
 
-    def to_go(self, vehicle: Vehicle, pose: Pose2D) -> float:
+    def to_go(self, pose: Pose2D) -> float:
         """Return weighted metres from a pose to the lead-in; large outside the plan."""
-        row, column = vehicle.costmap.grid.index(pose.x, pose.y)
+        row, column = self.plan.grid.index(pose.x, pose.y)
         rows, columns = self.plan.cost.shape
         if not (0 <= row < rows and 0 <= column < columns):
             return float(UNREACHED)
@@ -160,7 +160,9 @@ def planned(
     weight: Field | None = None,
 ) -> Plan | None:
     """Plan the cheapest path from `start`, by default the base's position; see `planner.plan`."""
-    config, radius = vehicle.config, planning_radius(vehicle)
+    config, radius, caution = vehicle.config, planning_radius(vehicle), vehicle.caution()
+    if caution is not None:
+        weight = caution if weight is None else weight * caution
     return plan(
         vehicle.costmap,
         start or vehicle.pose(),

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 import numpy as np
 
@@ -21,10 +20,14 @@ from momantu_bt.robot import (
     read_camera,
     read_laser,
 )
-from momantu_bt.service import HeldObject, Localization
+from momantu_bt.service import HeldObject, Localization, offers
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
+from momantu_skills.navigation.map.believed import believed_maps
+from momantu_skills.navigation.map.fields import Field
+from momantu_skills.navigation.map.maps import GridMap
+from momantu_skills.navigation.map.own import OwnMap
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
@@ -63,6 +66,9 @@ PREDICTIONS = (0.4, 0.8)
 """When the collision guard expects people at their predicted places, s from now."""
 PREDICTED = 12
 """Points around each such place."""
+UNKNOWN_COST = 3.0
+"""Cost of a metre of floor that a growing map does not know yet, relative to one that it does: a
+known way is preferred unless it is much longer."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -95,14 +101,19 @@ class Vehicle:
     ) -> None:
         """Start with an empty costmap, or with one that other vehicles see and clear too.
 
+        A localization that makes the map itself has one of those.
+
         top: height of the surface that the base drives up to, m; the arm may reach over it.
         gazes: turn a head to the floor ahead while driving; the skill must use CAMERA_CARRIER.
         """
         description = robot.description
         self.config, self._limits = config, description.base
         self.glides = description.base.sideways > 0.0
+        if shared is None and offers(localization, OwnMap):
+            shared = cast(OwnMap, localization).costmap
         self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
         self._slows = self.costmap.zones.slow
+        self.unknown_cost = UNKNOWN_COST
         self._earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
@@ -115,6 +126,7 @@ class Vehicle:
         self._outline = self._low_outline = outline
         self._body = Body(scene, description.base)
         self._low = top + HANDS_OVER
+        self._tall: tuple[GridMap, heights.Tall] | None = None
         self._posture: Array | None = None
         self._held: HeldObject | None = None
         self._base_from_laser: Transform | None = None
@@ -372,10 +384,23 @@ class Vehicle:
         """Whether arm or load have parts that get over the surface that the base drives up to."""
         return self.discs is not self.low_discs and not np.array_equal(self.discs, self.low_discs)
 
-    @cached_property
+    @property
     def tall(self) -> heights.Tall:
         """What the map knows and what may be higher than that surface."""
-        return heights.taller_than(self._skill.site, self._top)
+        grid, site = self.costmap.grid, self._skill.site
+        if self._tall is None or self._tall[0] is not grid:
+            grids = [grid] if self.costmap.grows else believed_maps(site)
+            self._tall = grid, heights.taller_than(grids, site.surfaces.values(), self._top)
+        return self._tall[1]
+
+    def caution(self) -> Field | None:
+        """Return the factors (rows, columns) on the cost of each metre; None: 1 everywhere.
+
+        Of what the map does not know: `unknown_cost`, which may be infinite.
+        """
+        if not self.costmap.grows:
+            return None
+        return np.where(self.costmap.unknown, self.unknown_cost, 1.0).astype(np.float32)
 
 
 def _moved_little(positions: Array, before: Array) -> bool:

@@ -6,7 +6,8 @@ import math
 
 from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Array
-from momantu_bt.service import Localization
+from momantu_bt.service import Localization, offers
+from momantu_skills.navigation.map.own import OwnMap
 
 POSITION_SIGMA = 0.15
 """Largest standard deviation of the position, m: half of the smallest tolerance in a doorway one
@@ -30,6 +31,11 @@ def is_localized(localization: Localization, quality: float = QUALITY) -> bool:
     return position < POSITION_SIGMA and yaw < YAW_SIGMA and localization.quality > quality
 
 
-def estimate(localization: Localization) -> BaseAt:
-    """Claim that the base is at its estimate, with the accuracy that driving needs."""
+def estimate(localization: Localization) -> BaseAt | None:
+    """Claim that the base is at its estimate, with the accuracy that driving needs.
+
+    None on a map that the robot makes itself: nobody else knows where that lies.
+    """
+    if offers(localization, OwnMap):
+        return None
     return BaseAt(localization.map_from_base, POSITION_SIGMA, YAW_SIGMA)

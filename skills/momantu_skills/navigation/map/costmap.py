@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from momantu_bt.formats.maps import FREE, OCCUPIED
+from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.world import Site
 from momantu_skills.navigation.config import NavigationConfig
@@ -40,7 +40,8 @@ class Costmap:
     None without preferred zones. frame: (x, y, resolution) of the grid, as the compiled kernels
     take it. looked: where the base stood at the newest depth picture; None before the first.
     movers: what moves, as rows of x, y, m, and of its velocity along both, m/s; it is no part of
-    `field`.
+    `field`. grows: the map is still being made; what it does not know then blocks no way. In a map
+    that was told, nobody needs to go where it says nothing.
     """
 
     def __init__(
@@ -49,27 +50,66 @@ class Costmap:
         overhang: GridMap | None,
         config: NavigationConfig,
         zones: Zones | None = None,
+        *,
+        grows: bool = False,
     ) -> None:
-        self.grid, self._config = grid, config
-        self.frame = np.array([*grid.origin, grid.resolution])
-        self.known = grid.cells != FREE
+        self._config, self.grows, self.zones = config, grows, zones or Zones()
+        self._read(grid)
         if overhang is not None:
             self.known |= overlaid(overhang, grid)
-        self._from_known = clearance(grid.cells == OCCUPIED, grid.resolution)
         self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
         self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
+        self._close()
+        self.movers = np.zeros((0, 4))
+        self.looked: Pose2D | None = None
+
+    def _read(self, grid: GridMap) -> None:
+        self.grid = grid
+        self.frame = np.array([*grid.origin, grid.resolution])
+        self.known = grid.cells == OCCUPIED if self.grows else grid.cells != FREE
+        self._from_known = clearance(grid.cells == OCCUPIED, grid.resolution)
+
+    def _close(self) -> None:
+        """Take what is known and the zones into the fields."""
+        grid = self.grid
         self.mapped_field = np.minimum(clearance(self.known, grid.resolution), np.float32(FAR))
-        self.zones = zones or Zones()
         self._closed, self.known_field = self.known, self.mapped_field
         kept_out = self.zones.blocked(grid)
         if kept_out is not None:
             self._closed = self.known | kept_out
             field = clearance(self._closed, grid.resolution)
             self.known_field = np.minimum(field, np.float32(FAR))
-        self.preferred = self.zones.factors(grid, config.planner.preferred)
+        self.preferred = self.zones.factors(grid, self._config.planner.preferred)
         self.field = self.known_field.copy()
-        self.movers = np.zeros((0, 4))
-        self.looked: Pose2D | None = None
+
+    def use(self, grid: GridMap, new_from_old: Pose2D) -> None:
+        """Take over the map as it has grown; what pictures showed is kept.
+
+        new_from_old: how the map has moved where the robot is. What the laser saw is kept as long
+        as neither that nor the raster changes; the map soon knows it too.
+        """
+        marked = [(value, self._marked(value)) for value in (LOW, TALL)]
+        same = grid.cells.shape == self.grid.cells.shape and grid.origin == self.grid.origin
+        laser = self._laser
+        self._read(grid)
+        self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
+        self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
+        if same and new_from_old == Pose2D(0.0, 0.0):
+            self._laser = laser
+            self._laser[self._from_known <= self._config.known_reach] = 0
+        c, s = math.cos(new_from_old.yaw), math.sin(new_from_old.yaw)
+        for value, old in marked:
+            there = old @ np.array([[c, s], [-s, c]]) + np.array([new_from_old.x, new_from_old.y])
+            self._depth[self._counts(there) > 0] = value
+        self._close()
+        if self.looked is not None:
+            self.looked = new_from_old @ self.looked
+        self.refresh()
+
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """The cells (rows, columns) of which the map knows nothing."""
+        return np.asarray(self.grid.cells == UNKNOWN)
 
     def clear(self, where: NDArray[np.bool_] | None = None) -> None:
         """Clear what was seen, everywhere or in the cells `where` (rows, columns); look again."""
@@ -144,7 +184,10 @@ class Costmap:
 
     def low_things(self) -> Array:
         """Middles (n, 2) of the cells in which pictures show something below the laser's plane."""
-        rows, columns = np.nonzero(self._depth == LOW)
+        return self._marked(LOW)
+
+    def _marked(self, value: int) -> Array:
+        rows, columns = np.nonzero(self._depth == value)
         return np.asarray(self.frame[:2] + (np.column_stack([columns, rows]) + 0.5) * self.frame[2])
 
     def lay(self, low_things: Array) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from momantu_bt.formats.maps import OCCUPIED
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.redrawing import DRAWN, Mask
-from momantu_bt.world import Site, Surface
-from momantu_skills.navigation.map.believed import believed_maps, raster
+from momantu_bt.world import Surface
+from momantu_skills.navigation.map.believed import raster
 from momantu_skills.navigation.map.costmap import FAR, room
 from momantu_skills.navigation.map.fields import Field, clearance
 from momantu_skills.navigation.map.maps import GridMap, overlaid
@@ -31,14 +31,9 @@ class Tall:
         return float(room(self.field, self.frame, discs, x, y, yaw))
 
 
-def taller_than(site: Site, height: float) -> Tall:
-    """What may reach above a height, m: everything on the maps but surfaces that are lower.
-
-    Raises:
-        MapError: a file is missing or broken.
-    """
-    grids = believed_maps(site)
-    low = [surface for surface in site.surfaces.values() if surface.height <= height]
+def taller_than(grids: Sequence[GridMap], surfaces: Iterable[Surface], height: float) -> Tall:
+    """What may reach above a height, m: everything on the maps but surfaces that are lower."""
+    low = [surface for surface in surfaces if surface.height <= height]
     grid = grids[0]
     field = np.minimum(clearance(tall_cells(grids, low), grid.resolution), np.float32(FAR))
     return Tall(field, np.array([*grid.origin, grid.resolution]))

@@ -13,6 +13,7 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.config import PlannerConfig
 from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.fields import Field, sample
+from momantu_skills.navigation.map.maps import GridMap
 
 UNREACHED = np.float32(1e6)
 STEP = 0.5
@@ -25,17 +26,24 @@ class Plan:
 
     cost: (rows, columns) distance to the goal in metres, weighted by nearness to obstacles;
     `UNREACHED` where it was not computed. path: (n, 2) map coordinates from the start to the goal.
-    goal: the goal pose.
+    goal: the goal pose. grid: the map that it was made on, whose raster `cost` has.
     """
 
     cost: Field
     path: Array
     goal: tuple[float, float]
+    grid: GridMap
 
     @property
     def length(self) -> float:
         """Length of the path, m."""
         return float(np.hypot(*np.diff(self.path, axis=0).T).sum())
+
+    def fits(self, grid: GridMap) -> bool:
+        """Whether a map still has the plan's raster; one that grows may get another."""
+        return grid is self.grid or (
+            grid.origin == self.grid.origin and grid.cells.shape == self.grid.cells.shape
+        )
 
 
 def plan(
@@ -72,7 +80,28 @@ def plan(
         return None
     ends = (float(c) for c in (start.x, start.y, goal.x, goal.y))
     path = _descend(cost, costmap.frame, *ends)
-    return Plan(cost, path, (goal.x, goal.y))
+    return Plan(cost, path, (goal.x, goal.y), costmap.grid)
+
+
+def reach(
+    costmap: Costmap, start: Pose2D, radius: float, comfort: float, costs: PlannerConfig
+) -> Field:
+    """Weighted metres from `start` to every cell on known floor: (rows, columns).
+
+    `UNREACHED` where a disc of `radius` m cannot get. What the base stands in counts as passable,
+    so that it can leave.
+    """
+    slowness = _slowness(costmap.field, radius, comfort, costs)
+    row, column = costmap.grid.index(start.x, start.y)
+    slowness[costmap.unknown] = np.inf
+    if not costmap.grid.contains(start.x, start.y):
+        return np.full(slowness.shape, UNREACHED, dtype=np.float32)
+    around = math.ceil(radius / costmap.grid.resolution)
+    here = slowness[
+        max(0, row - around) : row + around + 1, max(0, column - around) : column + around + 1
+    ]
+    here[~np.isfinite(here)] = costs.tight
+    return np.asarray(_march(slowness, row, column, -1, -1, costmap.grid.resolution))
 
 
 def _slowness(field: Field, radius: float, comfort: float, costs: PlannerConfig) -> Field:

@@ -1,0 +1,203 @@
+"""Frontiers: where known floor meets unknown floor, and what a look from near them would show.
+
+Yamauchi: A frontier-based approach for autonomous exploration (CIRA 1997); the gain of a look is
+counted by rays, as in Gonzalez-Banos and Latombe: Navigation strategies for exploring indoor
+environments (IJRR 2002).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN
+from momantu_bt.geometry import Pose2D
+from momantu_bt.messages import frozen
+from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.map.fields import Field
+from momantu_skills.navigation.map.maps import GridMap
+from momantu_skills.navigation.plan.planner import UNREACHED
+
+APART = 0.5
+"""Edge of the squares in which one frontier cell stands for all, m."""
+FEWEST = 2
+"""Fewest frontier cells in a square: single ones lie between the beams of far scans."""
+NEAR = 1.5
+"""How far from a frontier the base may stand to look at it, m."""
+SIGHT = 4.0
+"""How far a look counts, m: farther beams lie too far apart."""
+RAYS = 180
+GROWN = 0.1
+"""Distance from an obstacle within which nothing is looked at, m: no gap of 20 cm leads on."""
+LEAST_GAIN = 0.2
+"""Unknown floor that is worth a look, square metres."""
+TURN_UP = 1.0
+"""Way that every look costs beside its own, m: to stop, turn and see."""
+SAME = 0.4
+"""Distance within which a frontier counts as the same one, m."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prospect:
+    """A look at a frontier.
+
+    frontier: one of its cells, map, m. view: where the base stands, map. gain: square metres of
+    unknown floor in sight; way: to there, weighted metres.
+    """
+
+    frontier: tuple[float, float]
+    view: Pose2D
+    gain: float
+    way: float
+
+    @property
+    def score(self) -> float:
+        """Gain over way."""
+        return self.gain / (self.way + TURN_UP)
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """All looks that are worth their way, best first, and the share of the floor that is known.
+
+    share: known floor over itself and the unknown floor that the looks would show, 0..1.
+    """
+
+    prospects: tuple[Prospect, ...]
+    share: float
+
+
+def thick(costmap: Costmap) -> GridMap:
+    """The map with its obstacles grown, which closes gaps between the hits of far beams."""
+    cells = costmap.grid.cells.copy()
+    cells[costmap.known_field < GROWN] = OCCUPIED
+    return replace(costmap.grid, cells=frozen(cells))
+
+
+def outlook(
+    costmap: Costmap,
+    cost: Field,
+    stands: NDArray[np.bool_],
+    done: Sequence[tuple[float, float]] = (),
+) -> Outlook:
+    """What is left to explore.
+
+    cost: (rows, columns) weighted metres from the base, `UNREACHED` where it cannot get. stands:
+    (rows, columns) where it has room for any heading. done: frontiers that are left out, with what
+    is near them.
+    """
+    grid = thick(costmap)
+    views = np.where(stands, cost, UNREACHED)
+    seen = np.zeros(grid.cells.shape, dtype=np.bool_)
+    found = []
+    for row, column in _squares(grid):
+        x, y = _centre(grid, row, column)
+        if any(math.hypot(x - a, y - b) < SAME for a, b in done):
+            continue
+        at = _view(grid.cells, views, row, column, NEAR / grid.resolution, float(UNREACHED))
+        if at[0] < 0:
+            continue
+        gain = gain_at(grid, *at, seen)
+        if gain >= LEAST_GAIN:
+            vx, vy = _centre(grid, *at)
+            yaw = math.atan2(y - vy, x - vx) if at != (row, column) else 0.0
+            found.append(Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(cost[at])))
+    found.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
+    known = np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED))
+    left = np.count_nonzero(seen) if found else 0
+    return Outlook(tuple(found), known / (known + left) if known + left else 0.0)
+
+
+def gain_at(grid: GridMap, row: int, column: int, seen: NDArray[np.bool_] | None = None) -> float:
+    """Square metres of unknown floor in sight of a cell of a `thick` map.
+
+    seen: (rows, columns), in which the cells of that floor are marked.
+    """
+    marks = np.zeros(grid.cells.shape, dtype=np.bool_) if seen is None else seen
+    cells = _gain(grid.cells, row, column, SIGHT / grid.resolution, marks)
+    return float(cells * grid.resolution**2)
+
+
+def _squares(grid: GridMap) -> list[tuple[int, int]]:
+    """One frontier cell of each square that has enough of them: the one nearest to their mean."""
+    cells = grid.cells
+    unknown = np.pad(cells == UNKNOWN, 1)
+    beside = unknown[:-2, 1:-1] | unknown[2:, 1:-1] | unknown[1:-1, :-2] | unknown[1:-1, 2:]
+    rows, columns = np.nonzero((cells == FREE) & beside)
+    edge = round(APART / grid.resolution)
+    square = (rows // edge) * (cells.shape[1] // edge + 1) + columns // edge
+    chosen = []
+    for each in np.unique(square):
+        mine = np.nonzero(square == each)[0]
+        if len(mine) < FEWEST:
+            continue
+        r, c = rows[mine], columns[mine]
+        nearest = int(np.argmin((r - r.mean()) ** 2 + (c - c.mean()) ** 2))
+        chosen.append((int(r[nearest]), int(c[nearest])))
+    return chosen
+
+
+def _centre(grid: GridMap, row: int, column: int) -> tuple[float, float]:
+    x, y = grid.origin
+    return x + (column + 0.5) * grid.resolution, y + (row + 0.5) * grid.resolution
+
+
+@numba.njit(cache=True)
+def _view(
+    cells: NDArray[np.uint8], cost: Field, row: int, column: int, reach: float, unreached: float
+) -> tuple[int, int]:
+    """The cell that the base gets to first and from which a frontier cell is seen; (-1, -1)."""
+    rows, columns = cells.shape
+    r = math.ceil(reach)
+    best = unreached
+    found = (-1, -1)
+    for i in range(max(0, row - r), min(rows, row + r + 1)):
+        for j in range(max(0, column - r), min(columns, column + r + 1)):
+            away = math.hypot(i - row, j - column)
+            if away > reach or cost[i, j] >= best or cells[i, j] != FREE:
+                continue
+            if _clear(cells, i, j, row, column):
+                best = cost[i, j]
+                found = (i, j)
+    return found
+
+
+@numba.njit(cache=True)
+def _clear(cells: NDArray[np.uint8], i: int, j: int, row: int, column: int) -> bool:
+    """Whether only free cells lie between two."""
+    steps = max(abs(row - i), abs(column - j))
+    for k in range(1, steps):
+        a = math.floor(i + 0.5 + (row - i) * k / steps)
+        b = math.floor(j + 0.5 + (column - j) * k / steps)
+        if cells[a, b] != FREE:
+            return False
+    return True
+
+
+@numba.njit(cache=True)
+def _gain(
+    cells: NDArray[np.uint8], row: int, column: int, sight: float, seen: NDArray[np.bool_]
+) -> float:
+    """Area in cells of what is unknown along rays that end at what is occupied."""
+    rows, columns = cells.shape
+    area = 0.0
+    for k in range(RAYS):
+        angle = 2.0 * math.pi * k / RAYS
+        dy = math.sin(angle)
+        dx = math.cos(angle)
+        away = 1.0
+        while away < sight:
+            i = math.floor(row + 0.5 + dy * away)
+            j = math.floor(column + 0.5 + dx * away)
+            if not (0 <= i < rows and 0 <= j < columns) or cells[i, j] == OCCUPIED:
+                break
+            if cells[i, j] == UNKNOWN:
+                area += away * 2.0 * math.pi / RAYS
+                seen[i, j] = True
+            away += 1.0
+    return area

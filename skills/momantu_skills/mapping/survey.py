@@ -1,0 +1,71 @@
+"""A survey: scans one after the other, thinned by the way driven, and the map that they make."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+
+from momantu_bt.geometry import Pose2D
+from momantu_skills.mapping.config import MappingConfig
+from momantu_skills.mapping.logs.log import LoggedScan
+from momantu_skills.mapping.mapper import Mapper
+from momantu_skills.mapping.poses import ORIGIN
+from momantu_skills.mapping.tracking import Tracked
+from momantu_skills.navigation.map.sensing import Rays
+
+MATCHED_EVERY = 0.1
+"""The base must have driven this, m, or turned by as much, rad, since the last scan in use."""
+
+
+class Survey:
+    """Gives a mapper the scans that show something new.
+
+    start: `map_from_base` of the first scan. read: all scans, oldest first; used: those that the
+    mapper got.
+    """
+
+    def __init__(self, start: Pose2D = ORIGIN) -> None:
+        self.mapper = Mapper(MappingConfig(), start)
+        self.read: list[LoggedScan] = []
+        self.used: list[LoggedScan] = []
+
+    def due(self, odom_from_base: Pose2D) -> bool:
+        """Whether a scan taken now would be used."""
+        if not self.used:
+            return True
+        step = self.used[-1].odom_from_base.inverse() @ odom_from_base
+        return abs(step.x) + abs(step.y) + abs(step.yaw) > MATCHED_EVERY
+
+    def add(self, scan: LoggedScan) -> Tracked | None:
+        """Read a scan; None if the base has hardly moved since the last one that was used."""
+        self.read.append(scan)
+        if not self.due(scan.odom_from_base):
+            return None
+        self.used.append(scan)
+        return self.mapper.add(scan.odom_from_base, scan.rays)
+
+    def pose(self, odom_from_base: Pose2D) -> Pose2D:
+        """`map_from_base` now: a step of odometry from the last scan that was used."""
+        return self.mapper.poses[-1] @ (self.used[-1].odom_from_base.inverse() @ odom_from_base)
+
+    def finished(self) -> Survey:
+        """The same survey with its last loops looked for; this one goes on as it is."""
+        ended = Survey()
+        ended.mapper = copy.deepcopy(self.mapper)
+        ended.mapper.finish()
+        ended.read, ended.used = self.read[:], self.used[:]
+        return ended
+
+    def placed(self, first: int = 0) -> Iterator[tuple[Pose2D, Rays]]:
+        """The poses of the scans in use and their rays, from the `first` on."""
+        poses = self.mapper.poses[first:]
+        yield from ((p, s.rays) for p, s in zip(poses, self.used[first:], strict=True))
+
+    def trajectory(self) -> Iterator[tuple[float, Pose2D]]:
+        """Stamp and pose of each scan that was read."""
+        at = -1
+        for scan in self.read:
+            if at + 1 < len(self.used) and scan is self.used[at + 1]:
+                at += 1
+            step = self.used[at].odom_from_base.inverse() @ scan.odom_from_base
+            yield scan.stamp, self.mapper.poses[at] @ step
