@@ -16,11 +16,12 @@ class _Missing:
 MISSING: Any = _Missing()
 """The default of an input that a tree must give."""
 
-NAMES = ("place", "surface", "named_pose", "category", "goal", "spot", "tag")
+NAMES = ("place", "surface", "named_pose", "category", "goal", "spot", "tag", "taught")
 """What a text input may name, so that the checker knows the valid values.
 
 `goal` is a place, or a pose of the map written as text (see `Pose2D.from_text`), where the robot is
-to stand; `spot` is the same, but the robot need not stand there.
+to stand; `spot` is the same, but the robot need not stand there. `taught` is a name that the skill
+gives to a place or a surface.
 It may also be an entry point group, such as `momantu_bt.detectors`; the input then names a plug-in
 of that group.
 """

@@ -173,6 +173,7 @@ class Site:
             surfaces=Surfaces({}),
             tags=MappingProxyType(tags),
             area=None,
+            zones=MappingProxyType({}),
         )
 
     def of_a_run(self) -> Site:

@@ -36,7 +36,7 @@ class NamePlace(Skill):
     part of it.
     """
 
-    name: str = In(doc="lower-case letters, digits and underscores")
+    name: str = In(names="taught", doc="lower-case letters, digits and underscores")
     plane: SupportPlane | None = In(None, doc="the surface; by default where the base stands")
 
     also_called: ClassVar = ("teach_place", "remember_place", "name_surface", "save_place")

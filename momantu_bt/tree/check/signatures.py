@@ -15,7 +15,16 @@ from momantu_bt.tree.catalogue.nodes import said_type
 from momantu_bt.tree.check.declared import declared_spec, models_of, used_spec
 from momantu_bt.tree.check.floor import Floor, floor_of
 from momantu_bt.tree.language import is_xml
-from momantu_bt.tree.model import BROKEN, Document, Node, NodeModel, Reference, Scope, Tree
+from momantu_bt.tree.model import (
+    BROKEN,
+    Document,
+    Literal,
+    Node,
+    NodeModel,
+    Reference,
+    Scope,
+    Tree,
+)
 from momantu_bt.tree.problems import Problems
 from momantu_bt.tree.registry import Registry
 from momantu_bt.values.types import parse_type
@@ -225,7 +234,25 @@ class Context:
             return None
         if kind == "tag":
             return tuple(self.site.tags)
-        return self.site.known_places() if kind == "place" else tuple(self.site.surfaces)
+        told = self.site.known_places() if kind == "place" else tuple(self.site.surfaces)
+        taught = self.taught
+        return None if taught is None else (*told, *taught)
+
+    @property
+    def taught(self) -> tuple[str, ...] | None:
+        """Names that nodes of the document give to places; None if one is not written out."""
+        names: dict[str, None] = {}
+        for tree in self.document.trees.values():
+            for node in tree.root.walk():
+                skill = None if node.type in NODES else self.skill(node.type)
+                for port in () if skill is None else skill.ports.values():
+                    value = node.ports.get(port.name)
+                    if port.names != "taught" or value is None:
+                        continue
+                    if not isinstance(value, Literal) or not isinstance(value.value, str):
+                        return None
+                    names[value.value] = None
+        return tuple(names)
 
 
 def _first(ports: Mapping[str, Port]) -> str | None:

@@ -9,8 +9,10 @@ from momantu_bt.formats.places import Place
 from momantu_bt.importing import output_aside
 from momantu_bt.plugins import PluginError
 from momantu_bt.robots.plugins import ROBOTS
+from momantu_bt.tree.catalogue import NODES
 from momantu_bt.tree.check.goal import check_goal
 from momantu_bt.tree.check.named_world import world_of
+from momantu_bt.tree.check.root_keys import services_read
 from momantu_bt.tree.check.signatures import Context
 from momantu_bt.world import WorldError
 from momantu_bt.world_plugins import WORLDS
@@ -58,6 +60,8 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
         with output_aside():
             context.site, context.entry = entry.site(), entry
             check_goal(context, entry)
+            if _charts(context):
+                context.site, context.entry = context.site.uncharted(), None
         return entry.default_robot
     except DescriptionError as error:
         _broken("broken-world", context, error)
@@ -67,6 +71,21 @@ def _look_up_world(context: Context, name: str, place: Place) -> str | None:
         message = f"the world {name!r} cannot be read: {words_of(error)}"
         _error("broken-world", context, place, name, message)
     return None
+
+
+def _charts(context: Context) -> bool:
+    """Whether one of the services that skills need or the document reads makes its own map."""
+    nodes = [node for tree in context.document.trees.values() for node in tree.root.walk()]
+    kinds = [context.skill(node.type) for node in nodes if node.type not in NODES]
+    asked = {need for kind in kinds if kind is not None for need in kind.needs}
+    asked |= services_read(context, ((node, False) for node in nodes)).keys()
+    for name in asked:
+        try:
+            if context.registry.services[name].charts:
+                return True
+        except (KeyError, PluginError, AttributeError):
+            continue  # it is told elsewhere
+    return False
 
 
 def _look_up_robot(context: Context, name: str, place: Place) -> None:

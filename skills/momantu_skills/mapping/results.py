@@ -99,6 +99,14 @@ def _take_place(draft: Path, folder: Path) -> None:
     shutil.rmtree(old, ignore_errors=True)
 
 
+def read_report(folder: Path) -> dict[str, Any] | None:
+    """The report of a map; None if the folder holds no whole map."""
+    try:
+        return dict(json.loads((folder / REPORT).read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        return None
+
+
 def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str, Any]:
     """What is known of a map, as plain data: m and square metres."""
     cells, area = plan.cells(), plan.resolution**2

@@ -50,6 +50,7 @@ def test_the_folder_holds_a_map_that_opens_again(log, tmp_path, capsys):
         "map.png",
         "trajectory.tum",
         "report.json",
+        "site.yaml",
     }
     assert (read_map(out / "map.yaml").cells() == OCCUPIED).sum() > 100
     report = json.loads((out / "report.json").read_text())
@@ -95,3 +96,15 @@ def test_ctrl_c_saves_what_there_is(log, tmp_path, capsys, monkeypatch):
     assert json.loads((out / "report.json").read_text())["scans_read"] == 10
     assert "saving the map so far" in capsys.readouterr().err
     assert len(carmen.read_carmen(log).scans) > 10
+
+
+@pytest.mark.parametrize("given", [[], ["--log", "a.log", "--world", "small_flat"]])
+def test_it_wants_either_a_log_or_a_world(given, tmp_path, capsys):
+    assert main(["map", *given, "-o", str(tmp_path / "map")]) == ExitCode.WRONG_INPUT
+    assert "either --log with a log, or --world" in capsys.readouterr().err
+
+
+def test_a_world_that_is_not_there_is_told_and_nothing_is_written(tmp_path, capsys):
+    assert main(["map", "--world", "moon", "-o", str(tmp_path / "map")]) == ExitCode.WRONG_INPUT
+    assert "no world is called 'moon'" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
