@@ -49,14 +49,14 @@ class Explore(Skill):
     that is too narrow, for example. It drives on known floor only.
     """
 
-    share: float = In(
-        1.0,
-        least=0.05,
-        most=1,
-        doc="enough: known floor over known floor and what the robot could see from its edge",
+    share: int = In(
+        100,
+        least=5,
+        most=100,
+        doc="enough: known floor over known floor and what could be seen from its edge, per cent",
     )
     known: float = Out(unit="m2", live=True, doc="free floor on the map so far")
-    known_share: float = Out(live=True, doc="the share of the floor that is known, as `share`")
+    known_share: int = Out(live=True, doc="the share of the floor that is known, per cent")
 
     also_called: ClassVar = ("frontier_exploration", "map_building", "explore_lite", "slam")
     failures: ClassVar = {
@@ -88,8 +88,8 @@ class Explore(Skill):
         tour = self._tour(robot)
         while True:
             left = yield from compute(tour.outlook, CHOOSING)
-            self.known, self.known_share = self.mapping.known, float(left.share)
-            if left.share >= self.share:
+            self.known, self.known_share = self.mapping.known, math.floor(100.0 * left.share)
+            if self.known_share >= self.share:
                 return
             if not left.prospects:
                 tour.judge()

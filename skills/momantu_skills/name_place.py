@@ -46,10 +46,7 @@ class NamePlace(Skill):
         "NOT_LOCALIZED": "the robot is not sure enough where it is",
     }
     activities: ClassVar = {}
-    symptoms: ClassVar = {
-        "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
-        "BAD_SURFACE": {Symptom.NOT_SEEN},
-    }
+    symptoms: ClassVar = {"NOT_LOCALIZED": {Symptom.NOT_LOCALIZED}}
 
     localization: Localization = Needs()
 

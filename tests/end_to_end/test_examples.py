@@ -38,6 +38,8 @@ OUTPUTS: dict[str, Any] = {
     "enough": False,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
+    "known": 50.0,
+    "known_share": 100,
 }
 Ends = Callable[[int, dict[str, Any]], str | None]
 

@@ -1,4 +1,4 @@
-"""save_map and name_place: a folder whole or not at all, names that last, and each code."""
+"""save_map: a folder whole or not at all, with the names that were taught, and each code."""
 
 from __future__ import annotations
 
@@ -9,78 +9,19 @@ from typing import Any
 import pytest
 from momantu_skills.mapping import results
 from momantu_skills.mapping.building import build
-from momantu_skills.mapping.service import MappingService
 
 from momantu_bt.formats.files import OutputError
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
-from momantu_bt.geometry import Pose, Pose2D, Transform
-from momantu_bt.messages import BaseVelocity, SupportPlane
-from momantu_bt.robot import Robot
+from momantu_bt.geometry import Pose2D
 from momantu_bt.site_file import Names, SiteFileError, read_names
-from momantu_bt.skill import Needs, Out, Run, Skill
-from momantu_bt.testing import scripted_site
 from momantu_bt.world import Surface
 from tests.skills.mapping.walls import ROUND, driven, logged
-from tests.skills.scenery.flat import DESK, ROOMS, START, FlatRobot
-
-TOP = ((-0.3, -0.6), (0.3, -0.6), (0.3, 0.6), (-0.3, 0.6))
-"""Outline of a bench's top, m."""
+from tests.skills.scenery.building import START, TOP, building_of, code, measured
 
 
 @pytest.fixture
 def building(run_tree: Any) -> Any:
-    """`building(steps, **skills)`: a tree's steps in the flat world, on a map of its own."""
-
-    def run(steps: str, **skills: type[Skill]) -> Any:
-        robot = FlatRobot(START)
-        robot.boxes = [*ROOMS, DESK]
-        robot.dead.add("wrench")
-        body = "".join(f"    - {step}\n" for step in steps.strip().split("\n"))
-        tree = f"momantu_bt: 1\nmain: M\nvalues: {{plane: none}}\ntrees:\n  M:\n{body}"
-        site = scripted_site(start=START)
-        return run_tree(tree, robot=robot, site=site, skills={"ahead": Ahead, **skills})
-
-    return run
-
-
-class Ahead(Skill):
-    """Drive ahead for two seconds, on a map of its own."""
-
-    mapping: Any = Needs()
-    failures = {}
-    uses = {"base"}
-
-    def run(self, robot: Robot) -> Run:
-        """Command it."""
-        end = self.clock.now() + 2.0
-        while self.clock.now() < end:
-            robot.command("base", BaseVelocity(0.5, 0.2))
-            yield "ahead"
-
-
-def measured(outline: tuple[tuple[float, float], ...]) -> type[Skill]:
-    """A skill that has measured a surface."""
-
-    class Measured(Skill):
-        """Give it."""
-
-        plane: SupportPlane = Out(doc="the surface")
-        failures = {}
-
-        def run(self, robot: Robot) -> Run:
-            """Give it."""
-            yield "measured"
-            self.plane = SupportPlane(Pose(Transform((2.0, 1.0, 0.7)), "odom", 0.0), outline)
-
-    return Measured
-
-
-def code(report: Any) -> str:
-    return "" if report.failure is None else innermost(report.failure).code
-
-
-def innermost(failure: Any) -> Any:
-    return failure if failure.cause is None else innermost(failure.cause)
+    return building_of(run_tree)
 
 
 def test_a_map_is_saved_with_the_names_that_were_taught(building: Any, tmp_path: Path) -> None:
@@ -133,33 +74,6 @@ def test_without_scans_there_is_no_map(building: Any, tmp_path: Path) -> None:
     report = building(f"save_map: {{folder: {tmp_path / 'none'}}}")
     assert code(report) == "NOTHING_MAPPED"
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("name", ["'Table A'", "9th", "a-b", "''", "x" * 61])
-def test_a_name_is_like_the_sites_names(building: Any, name: str) -> None:
-    assert code(building(f"ahead\nname_place: {{name: {name}}}")) == "BAD_NAME"
-
-
-def test_a_place_is_no_surface(building: Any) -> None:
-    steps = "ahead\nname_place: {name: spot}\nmeasured: {plane: $plane}\n"
-    steps += "name_place: {name: spot, plane: $plane}"
-    assert code(building(steps, measured=measured(TOP))) == "BAD_NAME"
-
-
-def test_a_sliver_is_no_surface(building: Any) -> None:
-    steps = "ahead\nmeasured: {plane: $plane}\nname_place: {name: rim, plane: $plane}"
-    sliver = ((0.0, 0.0), (0.5, 0.0), (0.5, 0.04))
-    assert code(building(steps, measured=measured(sliver))) == "BAD_SURFACE"
-
-
-def test_who_is_lost_names_nothing(building: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(MappingService, "quality", 0.3)
-    assert code(building("ahead\nname_place: {name: spot}")) == "NOT_LOCALIZED"
-
-
-def test_a_taught_place_is_a_place_of_the_run(building: Any) -> None:
-    report = building("name_place: {name: start}\nahead\nnavigate: {in_front_of: start}")
-    assert report.status == "SUCCESS", report.failure or report.error
 
 
 def test_a_site_file_reads_back_and_says_what_is_wrong(tmp_path: Path) -> None:

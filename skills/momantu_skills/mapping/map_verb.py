@@ -57,7 +57,7 @@ def make_map(
       momantu-bt map --log office.log.gz -o maps/office --resolution 0.03
       momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
       momantu-bt map --log runs/3 -o maps/flat
-      momantu-bt map --world small_flat --seed 3 -o maps/flat
+      momantu-bt map --world my_rooms.yaml --seed 3 -o maps/rooms
     """
     if (log is None) == (world is None):
         raise InputError("give either --log with a log, or --world with a world to explore")
