@@ -45,8 +45,8 @@ class Told:
     def of(self, site: Site) -> Site:
         """The site, told so.
 
-        Without a map its poses mean nothing: the robot starts at the origin of its odometry, which
-        is the map then, and of the rest only what has no place is kept.
+        Without a map its poses mean nothing: the map's frame is odometry's then. The robot starts
+        at its origin, or where the names say; of the rest only what has no place is kept.
         """
         if self.map_file is not None:
             site = replace(
@@ -66,7 +66,7 @@ class Told:
             places=MappingProxyType({n: Pose2D(*pose) for n, pose in names.places.items()}),
             surfaces=MappingProxyType({n: s.surface() for n, s in names.surfaces.items()}),
         )
-        return replace(named, start=Pose2D(*names.start)) if self.charted else named
+        return replace(named, start=Pose2D(*names.start))
 
 
 def _nowhere(site: Site) -> Site:

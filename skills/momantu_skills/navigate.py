@@ -38,6 +38,8 @@ SURVEY = (0.05, 0.03)
 class Navigate(Skill):
     """Drive to a goal, around unknown obstacles, and stop there within tolerance.
 
+    Without a map poses lie in odom, and what nobody has seen counts as free: `PATH_BLOCKED` where
+    what was seen on the way leaves none.
     The site's zones hold: the base keeps out of some, drives slowly in others, and prefers others.
     """
 
@@ -103,7 +105,9 @@ class Navigate(Skill):
             yield from tucking.take_in(self, robot, self.planning_scene)
         surface = self._surface()
         top = 0.0 if surface is None else surface.height
-        vehicle = Vehicle(self, robot, self.localization, self.planning_scene, config, top)
+        vehicle = Vehicle(
+            self, robot, self.localization, self.planning_scene, config, top, goals=self._goals()
+        )
         destination = self._going = self._destination(vehicle, robot.description.working)
         controller = mppi.Mppi(robot.description.base, config, self.random)
         yield from trip.travel(vehicle, controller, destination, recovery=self.recovery)
@@ -114,8 +118,9 @@ class Navigate(Skill):
             return estimate(self.localization)
         if self._going is None or self._going.chosen is None:
             return None
-        if self.within_reach_of is None and offers(self.localization, OwnMap):
-            return None
+        own = self.site.map_file is None or offers(self.localization, OwnMap)
+        if own and self.within_reach_of is None:
+            return None  # nobody else knows where odometry, or the robot's own map, began
         if failure is None and self.within_reach_of is not None:
             target, stand = self.within_reach_of, self._going.chosen
             x, y, _ = self.frames.lookup(ODOM, target.frame).apply(target.position)
@@ -165,6 +170,18 @@ class Navigate(Skill):
             return surface_at(self._point(self.within_reach_of), self.site.surfaces.values())
         return self.site.surfaces.get(self.in_front_of or "")
 
+    def _goals(self) -> list[tuple[float, float]]:
+        """Return the point to drive to, map, m; none if it is no point."""
+        place = self.goal
+        if self.within_reach_of is not None:
+            return [self._point(self.within_reach_of)]
+        if self.in_front_of in self.site.surfaces:
+            place = self.site.surfaces[str(self.in_front_of)].map_from_surface
+        elif self.in_front_of is not None:
+            place = self.site.places[self.in_front_of]
+        assert place is not None  # `_check` has seen to it
+        return [(place.x, place.y)] if math.isfinite(place.x + place.y) else []
+
     def _point(self, pose: Pose) -> tuple[float, float]:
         """Return (x, y) of a pose in the map, by the current localization."""
         there = pose.position
@@ -192,9 +209,10 @@ class Navigate(Skill):
         ):
             width, height = vehicle.costmap.grid.size
             x, y = vehicle.costmap.grid.origin
+            where = "on the map, which" if vehicle.mapped else "in reach without a map, which"
             raise Failure(
                 "BAD_GOAL",
-                f"({pose.x}, {pose.y}) is not on the map, which spans x {x:.1f} to {x + width:.1f} "
-                f"and y {y:.1f} to {y + height:.1f} m",
+                f"({pose.x}, {pose.y}) is not {where} spans x {x:.1f} to {x + width:.1f} and "
+                f"y {y:.1f} to {y + height:.1f} m",
             )
         return trip.Destination(lambda: [Stand(pose, 0, 0.0)], tolerance)

@@ -129,6 +129,8 @@ class Relocalize(Skill):
         yield from self._rest(robot, SETTLE)
         if is_localized(self.localization):
             return True
+        if self.site.map_file is None:
+            return False
         config = configured(NavigationConfig, self.site.services.get("navigate", {}), "navigate")
         vehicle = lost.Lost(self, robot, self.localization, self.planning_scene, config)
         controller = mppi.Mppi(robot.description.base, vehicle.config, self.random)
@@ -153,7 +155,7 @@ class Relocalize(Skill):
         """Claim that the base is at its estimated pose; NOT_LOCALIZED denies it."""
         if failure is not None and failure.code != "NOT_LOCALIZED":
             return None
-        return estimate(self.localization)
+        return None if self.site.map_file is None else estimate(self.localization)
 
     def _rest(self, robot: Robot, seconds: float) -> Run:
         end = self.clock.now() + seconds - 1e-6

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from momantu_skills.navigation.localize.service import LocalizationService
 from momantu_bt.claim import BaseAt, BaseNear
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
 from momantu_bt.messages import BaseVelocity
+from momantu_bt.running.told import Told
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, small_robot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from tests.skills.scenery.flat import Flat, FlatSceneOf
@@ -57,6 +59,54 @@ def test_from_random_starts_to_random_goals(flat: Flat, drive: Drive, seed: int)
     goal = Pose2D(random.uniform(1.8, 2.9), random.uniform(-2.2, 2.2), random.uniform(-3, 3))
     world = flat(start, believed=start @ Pose2D(0.15, -0.12, 0.15), seed=seed)
     _arrived(drive(world, goal=goal), world, goal)
+
+
+def _unmapped(flat: Flat, start: Pose2D, **more: Any) -> ScriptedWorld:
+    """The flat world, of which the robot is told nothing but that it starts at the origin."""
+    world = flat(start, drift=0.0, **more)
+    told = Told(None, charted=False).of(world.site)
+    world.site = replace(told, places={"beyond": start.inverse() @ Pose2D(3.0, 2.3, 1.0)})
+    return world
+
+
+def test_without_a_map_it_finds_the_doorway_to_a_pose(flat: Flat, drive: Drive) -> None:
+    start, goal = Pose2D(-2.0, -1.5, 2.5), Pose2D(2.4, -2.0, 0.5)
+    world = _unmapped(flat, start)
+    result = drive(world, goal=start.inverse() @ goal)
+    _arrived(result, world, goal)
+    assert result.claim() is None
+
+
+def test_without_a_map_names_lie_in_odom(flat: Flat, drive: Drive) -> None:
+    world = _unmapped(flat, Pose2D(-2.0, 0.0, 0.4))
+    _arrived(drive(world, in_front_of="beyond"), world, Pose2D(3.0, 2.3, 1.0))
+
+
+def test_without_a_map_it_goes_to_what_was_detected(flat: Flat, drive: Drive) -> None:
+    start = Pose2D(-2.0, 0.0, 0.4)
+    world = _unmapped(flat, start)
+    there = (start.inverse().transform() @ Transform((3.9, 0.2, 0.8))).position
+    result = drive(world, within_reach_of=Pose(Transform(there), "odom", 0.0))
+    assert result.status == "SUCCESS", result.explain()
+    assert math.dist((world.robot.truth.x, world.robot.truth.y), (3.9, 0.2)) < 1.2
+    assert world.robot.nearest > 0.0
+
+
+def test_without_a_map_a_closed_room_is_said_to_be_closed(flat: Flat, drive: Drive) -> None:
+    start = Pose2D(-2.0, 0.0, 0.0)
+    world = _unmapped(flat, start, hidden=[(0.9, 0.3, 1.1, 1.6)])
+    result = drive(world, goal=start.inverse() @ Pose2D(2.4, -2.0, 0.0))
+    assert result.code in ("PATH_BLOCKED", "NO_PROGRESS"), result.explain()
+    assert world.robot.nearest > 0.0
+    assert abs(world.robot.linear) < 0.02
+    assert result.duration < 140.0
+
+
+def test_without_a_map_a_goal_too_far_away_is_refused(flat: Flat, drive: Drive) -> None:
+    world = _unmapped(flat, Pose2D(-2.0, 0.0, 0.0))
+    result = drive(world, goal=Pose2D(300.0, 0.0, 0.0))
+    assert result.code == "BAD_GOAL"
+    assert "in reach without a map" in result.explain()
 
 
 def test_in_front_of_a_surface_it_stands_square(flat: Flat, drive: Drive) -> None:

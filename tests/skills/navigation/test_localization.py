@@ -1,6 +1,7 @@
 """Localization finds the pose, says how sure it is, and repeats itself."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,13 +18,12 @@ from momantu_skills.navigation.map.maps import GridMap, read_grid
 from momantu_skills.navigation.map.sensing import SPREAD, Rays
 
 from momantu_bt.descriptions.tunables import configured
-from momantu_bt.engine.skills.services import ServiceError
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import BaseVelocity, LaserScan
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Run, Skill
-from momantu_bt.testing import ScriptedWorld, run_skill
+from momantu_bt.testing import ScriptedWorld, run_skill, scripted_site
 
 
 def _room() -> GridMap:
@@ -238,9 +238,19 @@ def test_the_service_tells_the_frame_buffer(flat) -> None:  # type: ignore[no-un
     assert Pose2D.from_transform(seen[0]).distance_to(world.robot.truth) < 0.2
 
 
-def test_a_site_without_a_map_is_refused() -> None:
-    with pytest.raises(ServiceError, match="no map_file"):
-        run_skill(_Wander, services={"localization": LocalizationService()})
+def test_without_a_map_odometry_alone_says_where_it_is() -> None:
+    site = replace(scripted_site(), start=Pose2D(3.0, 1.0, math.pi / 2))
+    service = LocalizationService()
+    result = run_skill(_Wander, site=site, services={"localization": service})
+    assert result.status == "SUCCESS", result.explain()
+    driven = Pose2D.from_transform(result.robot.state().odom_from_base)
+    assert driven.x > 0.05
+    assert service.map_from_base.distance_to(site.start @ driven) < 0.05
+    service.spread()
+    service.reset(Pose2D(0.0, 0.0, 0.0), 1.0, 1.0)
+    assert is_localized(service)
+    assert service.map_from_base.distance_to(site.start @ driven) < 0.05
+    assert service.places == ()
 
 
 def test_every_cell_of_the_flat_map_is_read_back(flat) -> None:  # type: ignore[no-untyped-def]

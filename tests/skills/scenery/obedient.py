@@ -64,6 +64,8 @@ class Obedient:
     def pose(self) -> Pose2D:
         return self.map_from_odom() @ self.at
 
+    mapped = True
+
     def show(self, path: Array) -> None:
         """Nobody watches."""
 

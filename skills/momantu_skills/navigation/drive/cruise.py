@@ -30,6 +30,8 @@ GLIDE_FROM = 0.8
 """The same for a base that glides there, which goes slowly sideways, m."""
 DETOURS = 8
 """Replans to a longer path before the base is reported to drive in circles."""
+UNMAPPED_DETOURS = 40
+"""The same without a map, where every closed door is a surprise."""
 LONGEST_BACK = 0.8
 """Longest distance that the base backs up from a table to free its arm, m."""
 PROGRESS = 0.1
@@ -121,7 +123,7 @@ class _Watch:
         if to_go > self._best + 1.0:
             self._detours += 1
             self._best, self._best_at = to_go, self._vehicle.now()
-        if self._detours > DETOURS:
+        if self._detours > (DETOURS if self._vehicle.mapped else UNMAPPED_DETOURS):
             raise Failure(
                 "NO_PROGRESS", f"{self._detours} detours did not lead past what is in the way"
             )

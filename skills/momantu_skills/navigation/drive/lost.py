@@ -27,8 +27,8 @@ from momantu_skills.navigation.map.heights import Tall
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.rolling import unmapped
 
-EXTENT = 20.0
-"""Distance from where it is lost up to which the base may drive, m."""
+EXTENT = 8.0
+"""Distance from where it is lost to which the base may drive, m; farther round an obstacle."""
 RINGS = (1.0, 1.8, 2.6, 3.6, 4.8, 6.0)
 """Distances of the spots from which a look may decide, m."""
 DIRECTIONS = 24
@@ -61,8 +61,8 @@ class Lost(Vehicle):
     ) -> None:
         at = Pose2D.from_transform(robot.state().odom_from_base)
         slow = config.model_copy(update={"speed": min(config.speed, SPEED)})
-        empty = unmapped((at.x - EXTENT, at.y - EXTENT), (at.x + EXTENT, at.y + EXTENT), slow)
-        super().__init__(skill, robot, localization, scene, slow, shared=empty)
+        corners = ((at.x - EXTENT, at.y - EXTENT), (at.x + EXTENT, at.y + EXTENT))
+        super().__init__(skill, robot, localization, scene, slow, shared=unmapped(corners, slow))
 
     def map_from_odom(self) -> Pose2D:
         """Return the identity: all poses are in odom."""

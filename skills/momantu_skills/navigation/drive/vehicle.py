@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TypeAlias, cast
 
 import numpy as np
@@ -34,7 +35,7 @@ from momantu_skills.perception.camera.aiming import aim
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
     from momantu_skills.navigation.drive import overlooked
-    from momantu_skills.navigation.map import costmap, heights, movers
+    from momantu_skills.navigation.map import costmap, heights, movers, rolling
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
@@ -98,27 +99,31 @@ class Vehicle:
         *,
         shared: costmap.Costmap | None = None,
         gazes: bool = True,
+        goals: Sequence[tuple[float, float]] = (),
     ) -> None:
         """Start with an empty costmap, or with one that other vehicles see and clear too.
 
-        A localization that makes the map itself has one of those.
+        A localization that makes the map itself has one of those. Without a map it is free until
+        something is seen, and has room for ways to the goals.
 
         top: height of the surface that the base drives up to, m; the arm may reach over it.
         gazes: turn a head to the floor ahead while driving; the skill must use CAMERA_CARRIER.
+        goals: points of the map to which it may drive, m.
         """
         description = robot.description
         self.config, self._limits = config, description.base
         self.glides = description.base.sideways > 0.0
         if shared is None and offers(localization, OwnMap):
             shared = cast(OwnMap, localization).costmap
-        self.costmap = costmap.of_site(skill.site, config) if shared is None else shared
-        self._slows = self.costmap.zones.slow
+        self.mapped = skill.site.map_file is not None or offers(localization, OwnMap)
         self.unknown_cost = UNKNOWN_COST
         self._earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
+        self.costmap = self._own_costmap(goals) if shared is None else shared
+        self._slows = self.costmap.zones.slow
         self._base_frame = description.base_frame
         outline = np.array(description.footprint)
         self.base_discs = self.low_discs = self.discs = footprint.discs(outline)
@@ -148,6 +153,12 @@ class Vehicle:
         if slowest >= self._limits.linear:
             return self._limits
         return self._limits.model_copy(update={"linear": slowest})
+
+    def _own_costmap(self, goals: Sequence[tuple[float, float]]) -> costmap.Costmap:
+        if self.mapped:
+            return costmap.of_site(self._skill.site, self.config)
+        here = self.pose()
+        return rolling.unmapped(((here.x, here.y), *goals), self.config)
 
     def now(self) -> float:
         """Return the world's clock, s."""
@@ -386,7 +397,9 @@ class Vehicle:
 
     @property
     def tall(self) -> heights.Tall:
-        """What the map knows and what may be higher than that surface."""
+        """What the map knows and what may be higher than that surface; without a map all seen."""
+        if not self.mapped:
+            return heights.Tall(self.costmap.field, self.costmap.frame)
         grid, site = self.costmap.grid, self._skill.site
         if self._tall is None or self._tall[0] is not grid:
             grids = [grid] if self.costmap.grows else believed_maps(site)

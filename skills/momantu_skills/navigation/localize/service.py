@@ -17,7 +17,7 @@ from momantu_skills.navigation.map.believed import believed_maps, corrections
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
-    from momantu_skills.navigation.localize import localizer
+    from momantu_skills.navigation.localize import localizer, odometry_alone
 
 
 MOVING = 1e-4
@@ -30,7 +30,8 @@ class LocalizationService(Service):
     It uses the laser when odometry has moved, and for a while at rest after a reset or a stop. The
     laser is assumed to be fixed to the base. If the laser fails, the service follows odometry
     alone, and skills that drive report the failure themselves. When scans return, the first one is
-    used.
+    used. Where the site has no map, odometry alone says where the robot is, in a map's frame that
+    begins at the site's start.
     """
 
     rate: ClassVar[float] = 10.0
@@ -44,16 +45,17 @@ class LocalizationService(Service):
 
     def start(self, context: ServiceContext) -> None:
         """Read the map and start around the site's start pose."""
-        if context.site.map_file is None:
-            raise ValueError(f"site {context.site.name!r} has no map_file to be localized in")
         self._config = configured(LocalizationConfig, context.parameters, "localization")
         self._frames = context.frames
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
         self._site, self._corrections = context.site, corrections(context.site)
-        self._localizer: localizer.Localizer = localizer.Localizer(
-            believed_maps(context.site)[0], self._config, context.random
-        )
+        self._localizer: localizer.Localizer | odometry_alone.OdometryAlone
+        if context.site.map_file is None:
+            self._localizer = odometry_alone.OdometryAlone(context.site.start)
+        else:
+            grid = believed_maps(context.site)[0]
+            self._localizer = localizer.Localizer(grid, self._config, context.random)
         self._odom_from_base: Pose2D | None = None
         self._since_scan = [0.0, 0.0]
         self._rest_scans = 0
@@ -75,7 +77,7 @@ class LocalizationService(Service):
             self._since_scan[1] += turn
             self._rest_scans = max(self._rest_scans, 3)
         self._follow_map()
-        if self._due(moving):
+        if self._site.map_file is not None and self._due(moving):
             self._weigh(robot, moving)
         elif self._told:
             return
@@ -85,7 +87,7 @@ class LocalizationService(Service):
 
     def _follow_map(self) -> None:
         """Use the map with a surface that was found elsewhere, and look at it anew."""
-        if corrections(self._site) != self._corrections:
+        if self._site.map_file is not None and corrections(self._site) != self._corrections:
             self._corrections = corrections(self._site)
             self._localizer.use_map(believed_maps(self._site)[0])
             self._rest_scans = self._config.rest_scans
