@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import shapely
@@ -153,9 +154,9 @@ def _weightless(sensor: WristWrench) -> object:
 
 
 def open_rolling(world: str, robot: str, seed: int) -> tuple[ScriptedWorld, Episode]:
-    """The episode of a seed, with a robot of that name that rolls in it."""
-    description, file = ROBOTS[robot](), load_world(world)
-    episode = draw_episode(world, seed)
+    """The episode of a seed of a world, by name or file, with a robot that rolls in it."""
+    description, named = ROBOTS[robot](), Path(world) if world.endswith(".yaml") else world
+    file, episode = load_world(named), draw_episode(named, seed)
     site = with_maps(episode.site, file, laser_band(description), description.height)
     episode = replace(episode, site=site)
     rolling = RollingRobot(description, episode, episode.start, seed)
