@@ -159,22 +159,20 @@ class Site:
         """Names of places and surfaces."""
         return (*self.places, *self.surfaces)
 
-    def uncharted(self) -> Site:
-        """The same for a robot that makes its map itself.
-
-        It is told where it starts, of tags by their numbers, and of objects; not what lies where.
-        """
+    def nowhere(self) -> Site:
+        """The same without what lies somewhere; what tags and objects look like is kept."""
         tags = {name: replace(tag, map_from_bundle=None) for name, tag in self.tags.items()}
         return replace(
             self,
-            map_file=None,
-            overhang_file=None,
             places=Places({}),
             surfaces=Surfaces({}),
             tags=MappingProxyType(tags),
-            area=None,
             zones=MappingProxyType({}),
         )
+
+    def uncharted(self) -> Site:
+        """The same for a robot that has no map, or makes it itself: it is told where it starts."""
+        return replace(self.nowhere(), map_file=None, overhang_file=None, area=None)
 
     def of_a_run(self) -> Site:
         """The same for one run, whose skills may correct where a surface stands."""

@@ -56,28 +56,17 @@ class Told:
                 area=self.area,
             )
         elif not self.charted:
-            site = replace(_nowhere(site), map_file=None, overhang_file=None, area=None)
-            site = replace(site, start=Pose2D(0.0, 0.0, 0.0), start_sigma=(0.0, 0.0))
+            origin = Pose2D(0.0, 0.0, 0.0)
+            site = replace(site.uncharted(), start=origin, start_sigma=(0.0, 0.0))
         return site if self.names is None else self._named(site, self.names)
 
     def _named(self, site: Site, names: Names) -> Site:
         named = replace(
-            _nowhere(site),
+            site.nowhere(),
             places=MappingProxyType({n: Pose2D(*pose) for n, pose in names.places.items()}),
             surfaces=MappingProxyType({n: s.surface() for n, s in names.surfaces.items()}),
         )
         return replace(named, start=Pose2D(*names.start))
-
-
-def _nowhere(site: Site) -> Site:
-    """The site without what lies somewhere; of tags and objects, what they look like is kept."""
-    tags = {name: replace(tag, map_from_bundle=None) for name, tag in site.tags.items()}
-    return replace(
-        site,
-        places=MappingProxyType({}),
-        surfaces=MappingProxyType({}),
-        tags=MappingProxyType(tags),
-    )
 
 
 def read_told(map: str | None, names: str | None) -> Told | None:
