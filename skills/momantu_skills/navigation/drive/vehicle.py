@@ -34,8 +34,8 @@ from momantu_skills.perception.camera.aiming import aim
 
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
-    from momantu_skills.navigation.drive import overlooked
-    from momantu_skills.navigation.map import costmap, heights, movers, rolling
+    from momantu_skills.navigation.drive import overlooked, people
+    from momantu_skills.navigation.map import costmap, heights, rolling
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
@@ -61,12 +61,6 @@ UNDER = 0.05
 """Distance beside the base up to which nothing lies where it stands, m: one cell."""
 SLOW_NEAR = 2.5
 """Distance of slow zones whose limit manoeuvres expect, m: they are planned from not so far."""
-FORGOTTEN = 0.15
-"""How much farther around somebody who walks what was seen is forgotten, m: swinging arms."""
-PREDICTIONS = (0.4, 0.8)
-"""When the collision guard expects people at their predicted places, s from now."""
-PREDICTED = 12
-"""Points around each such place."""
 UNKNOWN_COST = 3.0
 """Cost of a metre of floor that a growing map does not know yet, relative to one that it does: a
 known way is preferred unless it is much longer."""
@@ -140,7 +134,7 @@ class Vehicle:
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
         self._hits = np.zeros((0, 2))
-        self._movers = movers.Movers()
+        self._people = people.People(self.costmap)
         self._overlooked = overlooked.Overlooked()
         self.blind = 0.0
         self.blocked_for = 0.0
@@ -206,37 +200,10 @@ class Vehicle:
         if len(self._earlier):
             self._lay_earlier(pose)
         self.costmap.see_laser(pose, rays)
-        self._follow_movers(scan.stamp, rays)
+        self._people.see(scan.stamp, self.odom_from_base(), self.map_from_odom(), rays)
         if depth and self._look_due(pose):
             self._see_depth(pose, float(self._base_from_laser.position[2]))
         self.costmap.refresh(pose)
-
-    def _follow_movers(self, stamp: float, rays: Rays) -> None:
-        """Tell the costmap what moves; where that was, nothing is any more."""
-        self._movers.see(stamp, self.odom_from_base(), rays)
-        moving, left = self._movers.moving(stamp), self._movers.left
-        if not len(moving) and not left:
-            self.costmap.movers = moving
-            return
-        c, s = math.cos(self.map_from_odom().yaw), math.sin(self.map_from_odom().yaw)
-        turned = moving[:, 2:] @ np.array([[c, s], [-s, c]])
-        places = _moved(self.map_from_odom(), moving[:, :2])
-        self.costmap.movers = np.column_stack([places, turned])
-        gone = _moved(self.map_from_odom(), np.array(left).reshape(-1, 2))
-        self.costmap.forget(np.vstack([gone, places]), movers.RADIUS + FORGOTTEN)
-
-    def _predicted(self) -> Array:
-        """Points (n, 2), base frame, around where what moves will be within a second."""
-        moving = self.costmap.movers
-        pose = self.pose()
-        if not len(moving):
-            return np.zeros((0, 2))
-        turns = np.arange(PREDICTED) * (2.0 * math.pi / PREDICTED)
-        ring = movers.RADIUS * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-        at = [moving[:, :2] + moving[:, 2:] * t for t in PREDICTIONS]
-        points = (np.concatenate(at)[:, None, :] + ring).reshape(-1, 2)
-        own = pose.inverse()
-        return _moved(own, points)
 
     def _lay_earlier(self, pose: Pose2D) -> None:
         """Mark the low things that earlier pictures showed; none lies where the base stands."""
@@ -280,8 +247,8 @@ class Vehicle:
             image, self._frames, self._robot.description, state, self._scene, self.config
         )
         self._overlooked.see(self.odom_from_base(), obstacles, floor, self._hits)
-        there = np.column_stack([_moved(pose, obstacles), obstacles[:, 2]])
-        self.costmap.see_depth(there, _moved(pose, floor), laser - LASER_DOUBT)
+        there = np.column_stack([people.moved(pose, obstacles), obstacles[:, 2]])
+        self.costmap.see_depth(there, people.moved(pose, floor), laser - LASER_DOUBT)
         self.costmap.looked = pose
         shown = np.hypot(*np.vstack([obstacles[:, :2], floor]).T)
         self.blind = float(np.quantile(shown, FEW)) if len(shown) else self.blind
@@ -312,7 +279,7 @@ class Vehicle:
         command, speed = (linear, angular, lateral), self.speed()
         hits = np.vstack([self._hits, self._overlooked.near(self.odom_from_base(), guard.NEAR)])
         if len(self.costmap.movers):
-            hits = np.vstack([hits, self._predicted()])
+            hits = np.vstack([hits, self._people.expected(self.pose())])
         share = guard.safe_share(command, speed, self._limits, self.base_discs, hits)
         if share > 0.0:
             share = min(share, self._body.share(command, speed))
@@ -423,9 +390,3 @@ def _moved_little(positions: Array, before: Array) -> bool:
 
 def _same(outline: Array, other: Array) -> bool:
     return outline.shape == other.shape and float(np.abs(outline - other).max()) < OUTLINE_CHANGE
-
-
-def _moved(map_from_base: Pose2D, points: Array) -> Array:
-    c, s = math.cos(map_from_base.yaw), math.sin(map_from_base.yaw)
-    x, y = points[:, 0], points[:, 1]
-    return np.stack([map_from_base.x + c * x - s * y, map_from_base.y + s * x + c * y], axis=1)
