@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -26,7 +26,6 @@ from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
 from momantu_skills.navigation.map.believed import believed_maps
-from momantu_skills.navigation.map.fields import Field
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.own import OwnMap
 from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
@@ -36,6 +35,9 @@ with lazily():
     from momantu_skills.navigation.control import footprint, guard
     from momantu_skills.navigation.drive import overlooked, people
     from momantu_skills.navigation.map import costmap, heights, rolling
+
+if TYPE_CHECKING:
+    from momantu_skills.navigation.map.fields import Field
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
