@@ -43,6 +43,9 @@ BEYOND = 0.3
 """How far a beam must get beyond a place that it passes, m."""
 BESIDE = 0.1
 """Half width of a place that beams pass, m."""
+CONFIRMED = 3
+"""Scans in a row in which a thing must have got on so: corners that a robot passes do it once or
+twice."""
 LOST = 0.5
 """Time without a sight after which a thing is forgotten, s."""
 RADIUS = 0.3
@@ -84,11 +87,20 @@ class _Scan:
 
 @dataclass(slots=True)
 class _Track:
-    """A thing, by the times and places (odom) at which it was seen; velocity: m/s, or None."""
+    """A thing, by the times and places (odom) at which it was seen.
+
+    velocity: m/s, or None; confirmed: scans in a row in which it had one.
+    """
 
     times: deque[float] = field(default_factory=deque)
     places: deque[Array] = field(default_factory=deque)
     velocity: Array | None = None
+    confirmed: int = 0
+
+    @property
+    def walks(self) -> bool:
+        """Whether it surely moves."""
+        return self.confirmed >= CONFIRMED
 
     def expected(self, now: float) -> Array:
         """Where it should be now."""
@@ -118,10 +130,11 @@ class Movers:
         kept = []
         for track in self._tracks:
             gone = now - track.times[-1] > LOST
-            if track.velocity is not None:
+            if track.walks:
                 self.left += [track.places[0], track.places[-1]]
             if not gone:
                 track.velocity = self._velocity(track, now)
+                track.confirmed = 0 if track.velocity is None else track.confirmed + 1
                 kept.append(track)
         self._tracks = kept
 
@@ -130,7 +143,7 @@ class Movers:
         rows = [
             np.concatenate([track.expected(now), track.velocity])
             for track in self._tracks
-            if track.velocity is not None
+            if track.velocity is not None and track.walks
         ]
         return np.array(rows).reshape(-1, 4)
 
