@@ -56,6 +56,8 @@ NEAREST_LOOK, FARTHEST_LOOK = 1.0, 2.0
 """Least and largest distance of the point that the camera looks at, m."""
 ARRIVED = (0.15, 0.15)
 """Largest distance from a stand and heading error there, m and rad."""
+ELSEWHERE = 0.5
+"""Distance from where it looked before from which a stopped base sees something else, m."""
 KNOWN = 0.5
 """Share of a top that the map knows as something else, above which it is that."""
 HEIGHT = 0.03
@@ -273,12 +275,16 @@ PART = "of another size"
 def _went(
     vehicle: Vehicle, controller: mppi.Mppi, stands: list[Stand]
 ) -> Generator[str | Compute, Any, bool]:
-    """Drive to the best of these stands that can be reached; whether the base arrived."""
+    """Drive to the best of these stands that can be reached; whether there is a new view.
+
+    That is so at the stand, and where something stopped the base on its way.
+    """
+    start = vehicle.pose()
     to = trip.Destination(lambda: stands, ARRIVED)
     try:
         yield from trip.travel(vehicle, controller, to, recovery=False, quality=FIT)
     except Failure as failure:
         if failure.code not in NO_WAY:
             raise
-        return False
+        return start.distance_to(vehicle.pose()) > ELSEWHERE
     return True

@@ -33,7 +33,8 @@ def test_it_has_a_test_file_that_names_each_failure_code(skill: tuple[str, type[
         assert re.search(rf"\b{name}\b", file.read_text(encoding="utf-8"))
     else:
         file = HERE / f"test_{name}.py"
-    text = file.read_text(encoding="utf-8")
+    files = sorted({file, *HERE.glob(f"test_{name}_*.py")})
+    text = "".join(each.read_text(encoding="utf-8") for each in files)
     untested = [code for code in kind.failures if not re.search(rf"\b{code}\b", text)]
     assert not untested, f"{file} provokes no {', '.join(untested)}"
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from momantu_skills.mapping.service import MappingService
+from momantu_skills.name_place import NamePlace
 
 from tests.skills.scenery.building import TOP, building_of, code, measured
 
@@ -13,6 +14,11 @@ from tests.skills.scenery.building import TOP, building_of, code, measured
 @pytest.fixture
 def building(run_tree: Any) -> Any:
     return building_of(run_tree)
+
+
+def test_a_tree_may_use_the_names_that_it_teaches() -> None:
+    """The checker takes names from ports that teach them."""
+    assert NamePlace.name.names == "taught"
 
 
 @pytest.mark.parametrize("name", ["'Table A'", "9th", "a-b", "''", "x" * 61])

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from momantu_skills.mapping import results
 from momantu_skills.mapping.building import build
+from momantu_skills.save_map import SaveMap
 
 from momantu_bt.formats.files import OutputError
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
@@ -22,6 +23,12 @@ from tests.skills.scenery.building import START, TOP, building_of, code, measure
 @pytest.fixture
 def building(run_tree: Any) -> Any:
     return building_of(run_tree)
+
+
+def test_it_moves_nothing() -> None:
+    """A tree may save the map while another skill drives."""
+    assert not SaveMap.uses
+    assert set(SaveMap.needs) == {"mapping"}
 
 
 def test_a_map_is_saved_with_the_names_that_were_taught(building: Any, tmp_path: Path) -> None:

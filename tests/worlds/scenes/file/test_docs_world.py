@@ -15,7 +15,7 @@ PAGE = (Path(__file__).resolve().parents[4] / "docs" / "worlds.md").read_text(en
 
 @pytest.fixture
 def studio(tmp_path):
-    (text,) = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+    (text,) = re.findall(r"```yaml\n(momantu_world: .*?)```", PAGE, re.DOTALL)
     path = tmp_path / "studio.yaml"
     path.write_text(text, encoding="utf-8")
     return path
