@@ -219,6 +219,6 @@ def off_the_map(told: Told, start: Pose2D) -> str | None:
     return (
         f"the robot is told that it starts at ({start.x:.2f}, {start.y:.2f}), and the map spans x "
         f"{low_x:.1f} to {high_x:.1f} and y {low_y:.1f} to {high_y:.1f} m: is it of this place? "
-        "`--names` takes the start of the map's site.yaml, `relocalize: {everywhere: true}` finds "
-        "the robot anywhere on it"
+        "`--names` takes the start of the map's site.yaml; else let the tree look for the robot on "
+        "the whole map first"
     )

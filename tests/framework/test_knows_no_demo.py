@@ -37,6 +37,7 @@ from momantu_bt.world_plugins import WORLDS
 FOLDER = Path(momantu_bt.__file__).parent
 OWN = {
     "check": "a verb of the command line",
+    "mapping": "what YAML and JSON call keys with values",
     "operator": "the service through which a person drives, which the framework itself brings",
     "place": "a field of failures and problems, and what a text input may name",
 }
