@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import sapien
-
 from momantu_bt.geometry import Pose2D
+from momantu_bt.lazy import lazily
 from momantu_bt.world import TICK, WorldError, seeded
 from momantu_worlds.people.floor import PeopleFloor
 from momantu_worlds.people.walker import BEHIND, RADIUS, Follower, Point, Seen, Walker
@@ -18,6 +17,9 @@ from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.catalogue.person import person_body
 from momantu_worlds.scenes.geometry.bodies import Actor, Episode
 from momantu_worlds.scenes.geometry.plane import Rectangle
+
+with lazily():  # after `momantu_worlds.sapien`, which looks for a Vulkan driver first
+    import sapien
 
 WATCHED = 3.0
 """Distance from the robot's base within which people look at its links, m."""
