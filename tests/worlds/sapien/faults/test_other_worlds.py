@@ -8,6 +8,7 @@ import pytest
 from momantu_worlds.robots import fetch
 from momantu_worlds.sapien.faults.rows import ROWS, possible, prepare
 from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.tops import item_top
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.loading import draw_episode
 from momantu_worlds.scenes.referee.hand import hand_of
@@ -34,20 +35,24 @@ USUAL = {
 }
 
 
+def stage_in(world) -> Stage:
+    episode, robot = draw_episode(world, 0), fetch()
+    simulator = Simulator(robot, episode, 0, render=False)
+    judged = episode.goal is not None
+    referee = Referee(episode, simulator.truth, hand_of(robot)) if judged else None
+    made = Stage(simulator, episode, robot, 0, referee)
+    simulator.step()
+    if referee is not None:
+        referee.observe(simulator.now())
+    return made
+
+
 @pytest.fixture
 def stage_of(tmp_path):
     def stage(**parts) -> Stage:
         path = tmp_path / "world.yaml"
         path.write_text(json.dumps({**BARE, **parts}), encoding="utf-8")
-        episode, robot = draw_episode(path, 0), fetch()
-        simulator = Simulator(robot, episode, 0, render=False)
-        judged = episode.goal is not None
-        referee = Referee(episode, simulator.truth, hand_of(robot)) if judged else None
-        made = Stage(simulator, episode, robot, 0, referee)
-        simulator.step()
-        if referee is not None:
-            referee.observe(simulator.now())
-        return made
+        return stage_in(path)
 
     return stage
 
@@ -87,6 +92,16 @@ def test_a_goal_without_a_marker_has_all_but_what_the_marker_suffers(stage_of, f
     said = begun(stage, fault)
     assert said.pop("object.lost").endswith("cola is not in the hand now")
     assert set(said.values()) == {""}
+
+
+def test_between_the_boards_of_a_rack_is_room(fault):
+    stage = stage_in("warehouse")
+    top = item_top(stage)
+    for name in ("object.moved", "object.knocked_over"):
+        prepare(stage, fault(name, **USUAL.get(name, {}))).begin()
+        assert item_top(stage).name == top.name
+        rack = [p for p in stage.part_prisms(top.name, stage.goal.item) if p.top > 0.1]
+        assert stage.item_prism().clear_of(rack, 0.0)
 
 
 def test_a_door_below_a_lintel_is_blocked_by_a_crate_as_wide_as_it(stage_of, fault):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Transform
 from momantu_worlds.sapien.faults.laid import lying
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top
+from momantu_worlds.sapien.faults.tops import TableTop, item_top, obstacles
+from momantu_worlds.scenes.geometry.prisms import Prism
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 ASIDE = 0.01
@@ -33,9 +35,10 @@ class KnockedOver:
         """
         top = item_top(self._stage)
         start = float(self._stage.random(self._fault).uniform(0.0, 2 * math.pi))
+        others = obstacles(self._stage, top, self._stage.goal.item)
         for i in range(DIRECTIONS):
             pose = self._tipped(top, start + 2 * math.pi * i / DIRECTIONS)
-            if self._free(top, pose):
+            if self._free(top, pose, others):
                 self._stage.move_item(pose)
                 return
         raise FaultError(
@@ -51,6 +54,6 @@ class KnockedOver:
         rim_y = y + self._item.radius * math.sin(direction)
         return lying(self._item, rim_x, rim_y, float(top.map_from_top.position[2]), direction)
 
-    def _free(self, top: TableTop, pose: Transform) -> bool:
+    def _free(self, top: TableTop, pose: Transform, others: Sequence[Prism]) -> bool:
         prism = self._stage.item_prism(pose)
-        return top.holds(prism) and clear_on(self._stage, prism, top, ASIDE, self._stage.goal.item)
+        return top.holds(prism) and prism.clear_of(others, ASIDE)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Transform
 from momantu_worlds.sapien.faults.parameters import number, only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
+from momantu_worlds.sapien.faults.tops import TableTop, item_top, obstacles, things_on
 from momantu_worlds.scenes.arrange.spots import Disc, lane
+from momantu_worlds.scenes.geometry.prisms import Prism
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 FARTHEST = 2.0
@@ -38,7 +40,8 @@ class Moved:
         top = item_top(self._stage)
         start = float(self._stage.random(self._fault).uniform(0.0, 2 * math.pi))
         angles = [start + 2 * math.pi * i / DIRECTIONS for i in range(DIRECTIONS)]
-        free = [pose for pose in map(self._shifted, angles) if self._free(top, pose)]
+        others = obstacles(self._stage, top, self._stage.goal.item)
+        free = [pose for pose in map(self._shifted, angles) if self._free(top, pose, others)]
         if not free:
             raise FaultError(
                 f"{self._fault.name}: nothing is free {self._distance:g} m from "
@@ -56,9 +59,9 @@ class Moved:
         along, across = self._distance * math.cos(angle), self._distance * math.sin(angle)
         return Transform((x + along, y + across, z), pose.quaternion)
 
-    def _free(self, top: TableTop, pose: Transform) -> bool:
+    def _free(self, top: TableTop, pose: Transform, others: Sequence[Prism]) -> bool:
         prism = self._stage.item_prism(pose)
-        return top.holds(prism) and clear_on(self._stage, prism, top, ASIDE, self._stage.goal.item)
+        return top.holds(prism) and prism.clear_of(others, ASIDE)
 
     def _hand_gets_to(self, top: TableTop, pose: Transform) -> bool:
         x, y, _ = (float(v) for v in top.map_from_top.inverse().apply(pose.position))

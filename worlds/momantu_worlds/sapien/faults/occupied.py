@@ -10,7 +10,7 @@ from momantu_worlds.sapien.faults.box_row import HEIGHT, SIZE, BoxRow
 from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tag import marker_picture
-from momantu_worlds.sapien.faults.tops import TableTop, clear_on, table_top, things_on
+from momantu_worlds.sapien.faults.tops import TableTop, obstacles, table_top, things_on
 from momantu_worlds.scenes.arrange.spots import SetDown, free_spots
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.parts import block
@@ -92,6 +92,6 @@ class Occupied:
         assert prism is not None
         return (
             top.holds(prism)
-            and clear_on(self._stage, prism, top, 0.0)
+            and prism.clear_of(obstacles(self._stage, top), 0.0)
             and all(prism.clear_of([other], FROM_ROBOT) for other in self._stage.robot_prisms())
         )

@@ -11,7 +11,7 @@ from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_worlds.sapien.faults.pictures import PictureCount, cameras, frames
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.faults.tops import TableTop, clear_on, item_top, things_on
+from momantu_worlds.sapien.faults.tops import TableTop, item_top, obstacles, things_on
 from momantu_worlds.scenes.arrange.spots import Disc, lane, outline_points, seen_share
 from momantu_worlds.scenes.arrange.tabletop import ITEM_SEEN
 from momantu_worlds.scenes.geometry.bodies import Body
@@ -55,7 +55,7 @@ class Phantom:
         """A seeded free place on the top, visible from before it and in reach of the hand."""
         item, draw = UprightCylinder(self._item), self._stage.random(self._fault)
         here = top.map_from_top.inverse().apply(self._stage.item_pose().position)
-        things = things_on(self._stage, top)
+        things, others = things_on(self._stage, top), obstacles(self._stage, top)
         half = np.array(top.size) / 2
         for _ in range(TRIES):
             x, y = draw.uniform(-half, half).tolist()
@@ -65,7 +65,7 @@ class Phantom:
             if (
                 math.hypot(x - here[0], y - here[1]) >= APART
                 and top.holds(prism)
-                and clear_on(self._stage, prism, top, ASIDE)
+                and prism.clear_of(others, ASIDE)
                 and lane(spot, things, top.side)
                 and seen_share(outline_points(spot), things, top.placed, top.side, spot)
                 >= ITEM_SEEN

@@ -14,7 +14,7 @@ from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.faults.robot_room import RobotRoom
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Gap, Goal, Picture
-from momantu_worlds.scenes.geometry.prisms import Prism, body_prism
+from momantu_worlds.scenes.geometry.prisms import Prism, body_prism, part_prisms
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 
 if TYPE_CHECKING:
@@ -128,6 +128,12 @@ class Stage:
             if body.name not in without and (not categories or body.category in categories)
         )
         return [prism for prism in found if prism is not None]
+
+    def part_prisms(self, *without: str) -> list[Prism]:
+        """The space that the parts of bodies occupy, without the bodies named."""
+        pose = self.simulator.truth.pose
+        found = (part_prisms(b, pose(b.name)) for b in self.bodies if b.name not in without)
+        return list(chain.from_iterable(found))
 
     def move_item(self, map_from_item: Transform) -> None:
         """Move the item elsewhere, at rest; this does not count as dropped by the robot."""

@@ -9,7 +9,7 @@ from momantu_bt.geometry import Transform
 from momantu_bt.tags import USUAL_FAMILY
 from momantu_worlds.sapien.faults.parameters import only, whole
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.faults.tops import clear_on, table_top
+from momantu_worlds.sapien.faults.tops import obstacles, table_top
 from momantu_worlds.scenes.catalogue.tags import known_ids, shown_by, tag_picture
 from momantu_worlds.scenes.geometry.bodies import Body, Part, Picture
 from momantu_worlds.scenes.geometry.parts import block
@@ -35,7 +35,7 @@ class Overlaid:
         stage = self._stage
         body = self._cover(stage.simulator.truth.pose(stage.marker.name))
         prism, top = body_prism(body, body.map_from_body), table_top(stage, stage.goal.support)
-        if prism is not None and not clear_on(stage, prism, top, 0.0):
+        if prism is not None and not prism.clear_of(obstacles(stage, top), 0.0):
             raise FaultError(f"{self._fault.name}: something stands on {stage.marker.name} now")
         self._added = stage.add(body)
 

@@ -106,11 +106,9 @@ def things_on(stage: Stage, top: TableTop, *without: str) -> list[Disc]:
     return discs
 
 
-def clear_on(stage: Stage, prism: Prism, top: TableTop, least: float, *without: str) -> bool:
-    """Whether a prism on a top keeps `least` m from the robot and all bodies, some left out."""
-    return prism.clear_of(stage.prisms(top.name, *without), least) and prism.clear_of(
-        stage.robot_prisms(), least
-    )
+def obstacles(stage: Stage, top: TableTop, *without: str) -> list[Prism]:
+    """What a thing on a top must not meet: the robot, and parts of all bodies, some left out."""
+    return [*stage.part_prisms(top.name, *without), *stage.robot_prisms()]
 
 
 def _reach(body: Body, top_from_body: Transform, most: float) -> float:

@@ -83,6 +83,16 @@ def body_prism(body: Body, map_from_body: Transform) -> Prism | None:
     return prism_around(map_from_body.apply(points), map_from_body.yaw)
 
 
+def part_prisms(body: Body, map_from_body: Transform) -> list[Prism]:
+    """A prism around each part that collides: between the boards of a rack there is room."""
+    parts = [p for p in body.parts if p.collision]
+    placed = (map_from_body @ part.body_from_part for part in parts)
+    return [
+        prism_around(at.apply(outline(part)), at.yaw)
+        for at, part in zip(placed, parts, strict=True)
+    ]
+
+
 def body_points(body: Body) -> Array | None:
     """Points (n, 3) in the body's frame whose convex hull holds all that collides."""
     parts = [p.body_from_part.apply(outline(p)) for p in body.parts if p.collision]
