@@ -261,6 +261,16 @@ class Pose2D:
             -(c * self.x + s * self.y), -(-s * self.x + c * self.y), wrap_angle(-self.yaw)
         )
 
+    def apply(self, points: Array) -> Array:
+        """Points (n, 2) of the pose's own frame, in the frame that it is in."""
+        c, s = math.cos(self.yaw), math.sin(self.yaw)
+        x, y = points[:, 0], points[:, 1]
+        return np.stack([self.x + c * x - s * y, self.y + s * x + c * y], axis=1)
+
+    def rotate(self, vectors: Array) -> Array:
+        """Vectors (n, 2) of the pose's own frame, in the frame that it is in."""
+        return Pose2D(0.0, 0.0, self.yaw).apply(vectors)
+
     def distance_to(self, other: Pose2D) -> float:
         """Distance between the two positions, m."""
         return math.hypot(self.x - other.x, self.y - other.y)

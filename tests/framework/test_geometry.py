@@ -90,6 +90,15 @@ def test_planar_poses_compose_as_their_transforms(a: Pose2D, b: Pose2D) -> None:
     assert close(a.inverse().transform(), a.transform().inverse())
 
 
+@given(planar, planar)
+def test_a_planar_pose_carries_points_as_it_carries_poses(a: Pose2D, b: Pose2D) -> None:
+    carried = a @ b
+    np.testing.assert_allclose(a.apply(np.array([[b.x, b.y]])), [[carried.x, carried.y]], atol=1e-9)
+    ahead = np.array([[math.cos(b.yaw), math.sin(b.yaw)]])
+    turned = [[math.cos(carried.yaw), math.sin(carried.yaw)]]
+    np.testing.assert_allclose(a.rotate(ahead), turned, atol=1e-9)
+
+
 def test_a_transform_cannot_be_changed() -> None:
     transform = Transform((1, 2, 3))
     with pytest.raises(ValueError, match="read-only"):

@@ -50,7 +50,7 @@ def built_of(
     """The map of a survey, which can go on. stands: radius of the base, m, if it is known."""
     ended = survey.finished()
     mapper = ended.mapper
-    plan = floor_plan(ended.placed(), resolution, mapper.config.longest, stands)
+    plan = floor_plan(ended.placed(), resolution, mapper.config.matching.longest, stands)
     report = report_of(plan, mapper.poses, len(mapper.loops))
     stamps, poses = zip(*ended.trajectory(), strict=True)
     return Built(plan, stamps, poses, {"scans_read": len(survey.read), **report}, interrupted)

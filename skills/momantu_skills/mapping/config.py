@@ -2,39 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from momantu_skills.navigation.matching.config import MatchingConfig
 
 
 @dataclass(frozen=True, slots=True)
 class MappingConfig:
-    """Settings of `Mapper`. Lengths in m, angles in rad.
+    """Settings of `Mapper`, measured on the logs of `MatchingConfig`. Lengths in m."""
 
-    Measured on public logs of offices (180 and 361 beams, a scan every 0.7 and 1 m) and on
-    simulated ones.
-    """
-
-    resolution: float = 0.05
-    """Cell of a submap's likelihood grid, and of its points: one point is kept per cell."""
-    search_resolution: float = 0.1
-    """Cell of the grid in which a loop is searched."""
-    longest: float = 25.0
-    """Longer ranges are not matched: far points have no neighbours to make a line with."""
+    matching: MatchingConfig = field(default_factory=MatchingConfig)
     submap_way: float = 10.0
     """A submap ends after this way; half a metre counts for each radian of turning."""
-    submap_reach: float = 30.0
-    """Half of a growing submap's edge: farther points are left out of it."""
-    spread: float = 0.06
-    """Standard deviation of an end point around a surface: noise, cell and beam width."""
-    drift: float = 0.03
-    """Standard deviation of odometry per step, and `drift_per_metre` more for each metre."""
-    drift_per_metre: float = 0.1
-    turn_drift: float = 0.02
-    """The same for yaw, with parts for each metre and for each radian turned."""
-    turn_drift_per_metre: float = 0.03
-    turn_drift_per_radian: float = 0.1
-    good_score: float = 0.75
-    """Share of likelihood from which on a match is trusted as its geometry says; below it, the
-    variance grows with the sixth power of what is lacking: a scan into a new room matches badly."""
     broken_score: float = 0.35
     """Score below which a submap ends: it is rigid only as long as its scans match."""
     loop_uncertainty: float = 1.5

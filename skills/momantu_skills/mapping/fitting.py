@@ -8,7 +8,6 @@ import numpy as np
 
 from momantu_bt.formats.maps import OCCUPIED, UNKNOWN
 from momantu_bt.geometry import Pose2D
-from momantu_skills.mapping.poses import moved
 from momantu_skills.navigation.localize.fit import HIT, scan_fit
 from momantu_skills.navigation.map.fields import Field, surface_distance
 from momantu_skills.navigation.map.maps import GridMap
@@ -30,7 +29,7 @@ def fit(grid: GridMap, field: Field, map_from_base: Pose2D, rays: Rays) -> float
     too few others. field: of `surfaces`.
     """
     ends = rays.origin + rays.directions * np.where(rays.hit, rays.ranges, 0.0)[:, None]
-    there = np.floor((moved(ends, map_from_base) - np.array(grid.origin)) / grid.resolution)
+    there = np.floor((map_from_base.apply(ends) - np.array(grid.origin)) / grid.resolution)
     column, row = there.astype(np.int64).T
     rows, columns = grid.cells.shape
     on = (row >= 0) & (row < rows) & (column >= 0) & (column < columns) & rays.hit

@@ -9,9 +9,9 @@ import numpy as np
 
 from momantu_bt.geometry import Pose2D
 from momantu_skills.mapping.config import MappingConfig
-from momantu_skills.mapping.match import lines, search
-from momantu_skills.mapping.poses import as_array, as_pose, moved
-from momantu_skills.mapping.submap import Submap
+from momantu_skills.navigation.matching import lines, search
+from momantu_skills.navigation.matching.poses import as_array, as_pose
+from momantu_skills.navigation.matching.submap import Submap
 
 SEEN_FROM = 6.0
 """How far the middles of submaps that show the same place may lie apart, m."""
@@ -45,7 +45,7 @@ def find_loop(
     score, found = search.search(
         older.levels,
         older.corner,
-        config.search_resolution,
+        config.matching.search_resolution,
         points[:: max(1, len(points) // _POINTS)].copy(),
         as_array(guess @ middle),
         np.array([off, min(0.6, 0.15 + 0.08 * off)]),
@@ -60,7 +60,7 @@ def find_loop(
         older.points,
         older.normals,
         older.corner,
-        config.resolution,
+        config.matching.resolution,
         newer.points[::2].copy(),
         newer.normals[::2].copy(),
         start,
@@ -76,5 +76,5 @@ def find_loop(
 
 def distance(first: Submap, at: Pose2D, second: Submap, there: Pose2D) -> float:
     """Distance between the middles of two submaps at their poses of the map, m."""
-    a, b = moved(first.middle[None], at)[0], moved(second.middle[None], there)[0]
+    a, b = at.apply(first.middle[None])[0], there.apply(second.middle[None])[0]
     return float(math.hypot(a[0] - b[0], a[1] - b[1]))

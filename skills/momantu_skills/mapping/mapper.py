@@ -13,11 +13,11 @@ from momantu_skills.mapping import pose_graph
 from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.loops import SEEN_FROM, Loop, distance, find_loop
 from momantu_skills.mapping.pose_graph import Match
-from momantu_skills.mapping.poses import ORIGIN
-from momantu_skills.mapping.scan import ScanPoints
-from momantu_skills.mapping.submap import Growing, Submap
-from momantu_skills.mapping.tracking import Tracked, track
 from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.matching.poses import ORIGIN
+from momantu_skills.navigation.matching.scan import ScanPoints
+from momantu_skills.navigation.matching.submap import Growing, Submap
+from momantu_skills.navigation.matching.tracking import Tracked, track
 
 TURN_COUNTS = 0.5
 """Metres that a radian of turning counts for a submap's length."""
@@ -69,7 +69,7 @@ class Mapper:
 
     def add(self, odom_from_base: Pose2D, rays: Rays) -> Tracked:
         """Enter the next scan. The mapper's newest pose is then in `poses`."""
-        scan = ScanPoints.from_rays(rays, self.config.longest)
+        scan = ScanPoints.from_rays(rays, self.config.matching.longest)
         if not self.poses:
             tracked = Tracked(Pose2D(0.0, 0.0), NEW, 1.0)
             self.poses.append(self._start)
@@ -85,7 +85,7 @@ class Mapper:
     def _track(self, motion: Pose2D, scan: ScanPoints) -> Tracked:
         number = len(self.poses)
         first = self._open[0]
-        tracked = track(first.growing, first.scans[number - 1], motion, scan, self.config)
+        tracked = track(first.growing, first.scans[number - 1], motion, scan, self.config.matching)
         pose = self._origins[first.number] @ tracked.pose
         self.poses.append(pose)
         way = math.hypot(motion.x, motion.y) + TURN_COUNTS * abs(motion.yaw)
@@ -105,7 +105,7 @@ class Mapper:
         number, at = len(self._origins), len(self.poses) - 1
         self._origins.append(self.poses[-1])
         self._ways.append(self._ways[-1] + self._open[-1].way if self._open else 0.0)
-        opened = _Open(number, Growing(self.config))
+        opened = _Open(number, Growing(self.config.matching))
         opened.growing.add(Pose2D(0.0, 0.0), scan)
         opened.scans[at] = Pose2D(0.0, 0.0)
         self._open.append(opened)
@@ -169,7 +169,12 @@ class Mapper:
 
     def _optimise(self) -> None:
         self.poses, self._origins = pose_graph.optimise(
-            self.poses, self._origins, self._motions, self._matches, self.loops, self.config
+            self.poses,
+            self._origins,
+            self._motions,
+            self._matches,
+            self.loops,
+            self.config.matching,
         )
         self._optimised, self._waiting = len(self.poses), 0
         self.revision += 1

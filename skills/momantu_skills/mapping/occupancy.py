@@ -13,7 +13,6 @@ from momantu_bt.errors import InputError
 from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN, MapPicture
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.messages import frozen
-from momantu_skills.mapping.poses import moved
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 
@@ -87,8 +86,8 @@ class Occupancy:
         for pose, rays in scans:
             near = rays.hit & (rays.ranges <= self._longest)
             points = rays.origin + rays.directions[near] * rays.ranges[near, None]
-            ends.append(moved(points, pose))
-            origins.append(np.repeat(moved(rays.origin[None], pose), len(points), axis=0))
+            ends.append(pose.apply(points))
+            origins.append(np.repeat(pose.apply(rays.origin[None]), len(points), axis=0))
             bases.append(np.array([[pose.x, pose.y]]))
         return np.vstack(origins), np.vstack(ends), np.vstack(bases)
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
-from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.loops import Loop
-from momantu_skills.mapping.tracking import odometry_deviation
+from momantu_skills.navigation.matching.config import MatchingConfig
+from momantu_skills.navigation.matching.tracking import odometry_deviation
 
 with lazily():
     import gtsam
@@ -44,7 +44,7 @@ def optimise(
     motions: Sequence[Pose2D],
     matches: Sequence[Match],
     loops: Sequence[Loop],
-    config: MappingConfig,
+    config: MatchingConfig,
 ) -> tuple[list[Pose2D], list[Pose2D]]:
     """`map_from_base` of all scans and `map_from_submap` of all submaps, from first estimates.
 
@@ -71,7 +71,7 @@ def optimise(
 
 
 def _rigid(
-    first: Pose2D, motions: Sequence[Pose2D], matches: Sequence[Match], config: MappingConfig
+    first: Pose2D, motions: Sequence[Pose2D], matches: Sequence[Match], config: MatchingConfig
 ) -> Any:
     """What is known without loops."""
     graph = gtsam.NonlinearFactorGraph()

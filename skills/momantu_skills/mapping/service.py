@@ -16,10 +16,10 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
-from momantu_skills.mapping.poses import ORIGIN
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.localize.confidence import sigmas
 from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.matching.poses import ORIGIN
 
 with lazily():
     from momantu_skills.mapping import fitting, occupancy
@@ -92,7 +92,7 @@ class MappingService(Service):
         self._told = False
 
     def _empty(self) -> occupancy.Occupancy:
-        longest = self.survey.mapper.config.longest
+        longest = self.survey.mapper.config.matching.longest
         return occupancy.Occupancy(RESOLUTION, longest, STEP)
 
     def update(self, robot: Robot, now: float) -> None:

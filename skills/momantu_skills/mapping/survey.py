@@ -9,9 +9,9 @@ from momantu_bt.geometry import Pose2D
 from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.logs.log import LoggedScan
 from momantu_skills.mapping.mapper import Mapper
-from momantu_skills.mapping.poses import ORIGIN
-from momantu_skills.mapping.tracking import Tracked
 from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.matching.poses import ORIGIN
+from momantu_skills.navigation.matching.tracking import Tracked
 
 MATCHED_EVERY = 0.1
 """The base must have driven this, m, or turned by as much, rad, since the last scan in use."""

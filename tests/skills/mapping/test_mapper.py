@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from momantu_skills.mapping import pose_graph
 from momantu_skills.mapping.building import build
-from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.loops import Loop
 from momantu_skills.mapping.mapper import Mapper
 from momantu_skills.mapping.pose_graph import Match
+from momantu_skills.navigation.matching.config import MatchingConfig
 
 from momantu_bt.errors import InputError
 from momantu_bt.formats.maps import FREE, OCCUPIED
@@ -102,7 +102,7 @@ def test_the_estimate_is_good_at_once(way):
 
 
 def test_a_wrong_loop_loses_its_influence():
-    config = MappingConfig()
+    config = MatchingConfig()
     step = Pose2D(1.0, 0.0, 0.0)
     scans = [Pose2D(float(k), 0.0) for k in range(20)]
     tight = np.diag([0.02**2, 0.02**2, 0.005**2])
@@ -118,7 +118,7 @@ def test_a_wrong_loop_loses_its_influence():
 
 
 def test_right_loops_pull_a_bent_way_straight():
-    config = MappingConfig()
+    config = MatchingConfig()
     bent = [Pose2D(0.0, 0.0)]
     for _ in range(39):
         bent.append(bent[-1] @ Pose2D(1.0, 0.0, math.tau / 40 + 0.01))

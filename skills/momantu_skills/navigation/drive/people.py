@@ -32,10 +32,10 @@ class People:
         if not len(moving) and not left:
             self._costmap.movers = moving
             return
-        places = moved(map_from_odom, moving[:, :2])
-        ways = moved(Pose2D(0.0, 0.0, map_from_odom.yaw), moving[:, 2:])
+        places = map_from_odom.apply(moving[:, :2])
+        ways = map_from_odom.rotate(moving[:, 2:])
         self._costmap.movers = np.column_stack([places, ways])
-        gone = moved(map_from_odom, np.array(left).reshape(-1, 2))
+        gone = map_from_odom.apply(np.array(left).reshape(-1, 2))
         self._costmap.forget(np.vstack([gone, places]), RADIUS + FORGOTTEN)
 
     def expected(self, map_from_base: Pose2D) -> Array:
@@ -47,11 +47,4 @@ class People:
         ring = RADIUS * np.stack([np.cos(turns), np.sin(turns)], axis=1)
         at = [moving[:, :2] + moving[:, 2:] * t for t in PREDICTIONS]
         points = (np.concatenate(at)[:, None, :] + ring).reshape(-1, 2)
-        return moved(map_from_base.inverse(), points)
-
-
-def moved(pose: Pose2D, points: Array) -> Array:
-    """Points (n, 2) in the frame that a pose is in."""
-    c, s = math.cos(pose.yaw), math.sin(pose.yaw)
-    x, y = points[:, 0], points[:, 1]
-    return np.stack([pose.x + c * x - s * y, pose.y + s * x + c * y], axis=1)
+        return map_from_base.inverse().apply(points)

@@ -249,8 +249,8 @@ class Vehicle:
             image, self._frames, self._robot.description, state, self._scene, self.config
         )
         self._overlooked.see(self.odom_from_base(), obstacles, floor, self._hits)
-        there = np.column_stack([people.moved(pose, obstacles), obstacles[:, 2]])
-        self.costmap.see_depth(there, people.moved(pose, floor), laser - LASER_DOUBT)
+        there = np.column_stack([pose.apply(obstacles), obstacles[:, 2]])
+        self.costmap.see_depth(there, pose.apply(floor), laser - LASER_DOUBT)
         self.costmap.looked = pose
         shown = np.hypot(*np.vstack([obstacles[:, :2], floor]).T)
         self.blind = float(np.quantile(shown, FEW)) if len(shown) else self.blind

@@ -8,11 +8,11 @@ import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
-from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.navigation.map.sensing import SPREAD, Rays
+from momantu_skills.navigation.matching.config import MatchingConfig
 
 with lazily():
-    from momantu_skills.mapping import poses, scan, submap, tracking
+    from momantu_skills.navigation.matching import scan, submap, tracking
 
 
 class Panorama:
@@ -24,7 +24,7 @@ class Panorama:
     def __init__(self) -> None:
         self.way = self.turned = 0.0
         self.here = Pose2D(0.0, 0.0, 0.0)
-        self._config = MappingConfig()
+        self._config = MatchingConfig()
         self._surfaces = submap.Growing(self._config)
         self._scanned: Pose2D | None = None
         self._views: list[tuple[Pose2D, Rays]] = []
@@ -48,7 +48,7 @@ class Panorama:
         self._keep(rays)
 
     def _keep(self, rays: Rays) -> None:
-        ends = poses.moved(rays.points(), self.here)
+        ends = self.here.apply(rays.points())
         cells = np.floor(ends / SPREAD).astype(np.int64)
         keys, first = np.unique(cells[:, 0] * 100_003 + cells[:, 1], return_index=True)
         new = np.sort(first[~np.isin(keys, self._seen)])
@@ -66,7 +66,7 @@ class Panorama:
 
     def points(self, most: int) -> Array:
         """About `most` of the points (k, 2), in the base frame, m."""
-        parts = [poses.moved(rays.points(), pose) for pose, rays in self.views()]
+        parts = [pose.apply(rays.points()) for pose, rays in self.views()]
         points = np.concatenate(parts) if parts else np.zeros((0, 2))
         step = max(1, len(points) // most)
         return np.ascontiguousarray(points[step // 2 :: step])

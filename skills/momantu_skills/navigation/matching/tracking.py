@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
-from momantu_skills.mapping.config import MappingConfig
-from momantu_skills.mapping.match import likelihood, lines
-from momantu_skills.mapping.poses import as_array, as_pose
-from momantu_skills.mapping.scan import ScanPoints
-from momantu_skills.mapping.submap import Growing
+from momantu_skills.navigation.matching import likelihood, lines
+from momantu_skills.navigation.matching.config import MatchingConfig
+from momantu_skills.navigation.matching.poses import as_array, as_pose
+from momantu_skills.navigation.matching.scan import ScanPoints
+from momantu_skills.navigation.matching.submap import Growing
 
 FEWEST = 25
 """Fewest points on lines for a match to count."""
@@ -38,7 +38,7 @@ class Tracked:
     score: float
 
 
-def odometry_deviation(motion: Pose2D, config: MappingConfig) -> Array:
+def odometry_deviation(motion: Pose2D, config: MatchingConfig) -> Array:
     """Standard deviations (m, rad) of a step that odometry tells."""
     way, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
     return np.array(
@@ -52,7 +52,7 @@ def odometry_deviation(motion: Pose2D, config: MappingConfig) -> Array:
 
 
 def track(
-    submap: Growing, last: Pose2D, motion: Pose2D, scan: ScanPoints, config: MappingConfig
+    submap: Growing, last: Pose2D, motion: Pose2D, scan: ScanPoints, config: MatchingConfig
 ) -> Tracked:
     """Match a scan. last: `submap_from_base` of the scan before; motion: odometry since then."""
     expected = as_array(last @ motion)

@@ -19,14 +19,3 @@ def as_array(pose: Pose2D) -> Array:
 def as_pose(pose: Array) -> Pose2D:
     """The pose of an array (3,)."""
     return Pose2D(float(pose[0]), float(pose[1]), math.remainder(float(pose[2]), math.tau))
-
-
-def moved(points: Array, pose: Pose2D) -> Array:
-    """Points (n, 2) of a frame at `pose`."""
-    return np.asarray(turned(points, pose.yaw) + np.array([pose.x, pose.y]))
-
-
-def turned(vectors: Array, yaw: float) -> Array:
-    """Vectors (n, 2) turned by an angle, rad."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    return np.ascontiguousarray(vectors @ np.array([[c, s], [-s, c]]))

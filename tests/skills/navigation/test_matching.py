@@ -6,13 +6,11 @@ import itertools
 
 import numpy as np
 import pytest
-from momantu_skills.mapping.config import MappingConfig
-from momantu_skills.mapping.match import likelihood, lines, search
-from momantu_skills.mapping.occupancy import floor_plan
-from momantu_skills.mapping.poses import as_array, moved
-from momantu_skills.mapping.scan import ScanPoints
-from momantu_skills.mapping.submap import Growing
-from momantu_skills.navigation.map.sensing import Rays
+from momantu_skills.navigation.matching import likelihood, lines, search
+from momantu_skills.navigation.matching.config import MatchingConfig
+from momantu_skills.navigation.matching.poses import as_array
+from momantu_skills.navigation.matching.scan import ScanPoints
+from momantu_skills.navigation.matching.submap import Growing
 
 from momantu_bt.geometry import Pose2D
 from tests.skills.mapping.walls import RING, seen
@@ -92,7 +90,7 @@ def test_each_level_of_the_pyramid_bounds_its_block():
 @pytest.mark.parametrize("off", [(0.15, -0.1, 0.05), (-0.2, 0.1, -0.08)])
 def test_lines_pull_a_scan_into_place(off):
     noise = np.random.default_rng(1)
-    config = MappingConfig()
+    config = MatchingConfig()
     at, there = Pose2D(1.5, 1.5, 0.4), Pose2D(1.8, 1.6, 0.6)
     growing = Growing(config)
     growing.add(at, ScanPoints.from_rays(seen(RING, at, noise), config.longest))
@@ -121,7 +119,7 @@ def test_lines_pull_a_scan_into_place(off):
 def test_a_corridor_says_nothing_about_the_way_along_it():
     noise = np.random.default_rng(2)
     walls = [(-50.0, 0.0, 50.0, 0.0), (-50.0, 2.0, 50.0, 2.0)]
-    config = MappingConfig()
+    config = MatchingConfig()
     scan = ScanPoints.from_rays(seen(walls, Pose2D(0.0, 1.0), noise), config.longest)
     growing = Growing(config)
     growing.add(Pose2D(0.0, 0.0), scan)
@@ -146,28 +144,7 @@ def test_normals_point_to_the_sensor_and_across_the_wall():
     noise = np.random.default_rng(3)
     rays = seen([(-5.0, 2.0, 5.0, 2.0)], Pose2D(0.0, 0.0, 1.57), noise)
     scan = ScanPoints.from_rays(rays, 25.0)
-    across = moved(scan.normals, Pose2D(0.0, 0.0, 1.57))
+    across = Pose2D(0.0, 0.0, 1.57).apply(scan.normals)
     named = (scan.normals != 0).any(axis=1)
     assert named.mean() > 0.9
     assert (across[named, 1] < -0.9).all()
-
-
-def test_a_beam_frees_its_cells_and_occupies_its_last():
-    rays = Rays(np.zeros(2), np.array([[1.0, 0.0]]), np.array([1.02]), np.array([True]))
-    plan = floor_plan([(Pose2D(0.02, 0.02), rays)], 0.1, 25.0)
-    row = round(-plan.origin[1] / 0.1)
-    cells = plan.cells()[row]
-    start = round(-plan.origin[0] / 0.1)
-    assert list(cells[start : start + 11]) == [0] * 10 + [1]
-    assert cells[start + 11] == 2
-
-
-def test_a_beam_without_a_hit_says_nothing():
-    rays = Rays(
-        np.zeros(2),
-        np.array([[1.0, 0.0], [0.0, 1.0]]),
-        np.array([1.0, 9.0]),
-        np.array([True, False]),
-    )
-    plan = floor_plan([(Pose2D(0.0, 0.0), rays)], 0.1, 25.0)
-    assert (plan.cells() == 0).sum() <= 11

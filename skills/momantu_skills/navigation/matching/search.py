@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_skills.mapping.match.likelihood import Bytes, blocks, share
+from momantu_skills.navigation.matching.likelihood import Bytes, blocks, share
 
 LEVELS = 5
 """Levels above the grid: blocks of 32 cells."""

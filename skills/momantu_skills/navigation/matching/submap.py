@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Pose2D
-from momantu_skills.mapping.config import MappingConfig
-from momantu_skills.mapping.match import likelihood, lines, search
-from momantu_skills.mapping.match.likelihood import Bytes
-from momantu_skills.mapping.poses import moved, turned
-from momantu_skills.mapping.scan import ScanPoints
+from momantu_skills.navigation.matching import likelihood, lines, search
+from momantu_skills.navigation.matching.config import MatchingConfig
+from momantu_skills.navigation.matching.likelihood import Bytes
+from momantu_skills.navigation.matching.scan import ScanPoints
 
 _CAPACITY = 40_000
 """Most points of a growing submap: 50 m of wall on both sides, cell by cell."""
@@ -19,7 +18,7 @@ _CAPACITY = 40_000
 class Growing:
     """A submap into which scans are still entered; see `Submap`."""
 
-    def __init__(self, config: MappingConfig) -> None:
+    def __init__(self, config: MatchingConfig) -> None:
         self._config = config
         edge = round(2 * config.submap_reach / config.resolution)
         self.corner = np.full(2, -config.submap_reach)
@@ -33,7 +32,7 @@ class Growing:
     def add(self, pose: Pose2D, scan: ScanPoints) -> None:
         """Enter a scan at `submap_from_base`."""
         cell = self._config.resolution
-        points = moved(scan.points, pose)
+        points = pose.apply(scan.points)
         likelihood.add_ends(self.grid, self.bound, self.corner, cell, points, self._stamp)
         self.count = lines.add_lines(
             self.index,
@@ -43,7 +42,7 @@ class Growing:
             self.corner,
             cell,
             points,
-            turned(scan.normals, pose.yaw),
+            pose.rotate(scan.normals),
         )
 
     def finished(self) -> Submap | None:
@@ -58,7 +57,7 @@ class Growing:
 class Submap:
     """The points (n, 2) of a finished submap and the normals (n, 2) there, in its frame."""
 
-    def __init__(self, points: Array, normals: Array, config: MappingConfig) -> None:
+    def __init__(self, points: Array, normals: Array, config: MatchingConfig) -> None:
         self.points, self.normals = points, normals
         self.middle = points.mean(axis=0)
         self.corner = points.min(axis=0) - 1.0
@@ -69,7 +68,7 @@ class Submap:
         self.index[where[:, 1], where[:, 0]] = np.arange(len(points))
         self.levels = self._levels(size, config)
 
-    def _levels(self, size: Array, config: MappingConfig) -> Bytes:
+    def _levels(self, size: Array, config: MatchingConfig) -> Bytes:
         cell = config.search_resolution
         stamp = likelihood.stencil(config.search_resolution, cell)
         columns, rows = np.ceil(size / cell).astype(int)

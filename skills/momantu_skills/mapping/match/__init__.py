@@ -1,1 +1,0 @@
-"""Scan matching: likelihood grids, search in large windows, points to lines."""

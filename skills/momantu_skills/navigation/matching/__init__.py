@@ -1,0 +1,1 @@
+"""Scan matching: likelihood grids, search in large windows, points to lines, submaps."""
