@@ -13,9 +13,9 @@ from momantu_bt.goal import Goal
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site, Verdict, Video, View, WorldError
-from momantu_worlds.people.crowd import Crowd
 from momantu_worlds.sapien.faults.rows import possible, prepare
 from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.people.actors import crowd_of
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.arrange.episode import goal_of
@@ -44,18 +44,10 @@ class SapienWorld:
         self._path, self._episode = path, episode
         self._description = description
         self.simulator = Simulator(description, episode, seed)
-        self._people = self._crowd_of(episode, seed)
+        crowd = crowd_of(self.simulator, episode, seed) if episode.actors else None
+        self._people: frozenset[str] = frozenset() if crowd is None else crowd.names
         self._referee = self._referee_of(episode) if referee and episode.goals else None
-        self._stage = Stage(self.simulator, episode, description, seed, self._referee)
-
-    def _crowd_of(self, episode: Episode, seed: int) -> frozenset[str]:
-        """Let the episode's people walk from now on; their names."""
-        if not episode.actors:
-            return frozenset()
-        crowd = Crowd(self.simulator, episode, seed)
-        self.simulator.before_tick.append(crowd.plan)
-        self.simulator.before_step.append(crowd.move)
-        return crowd.names
+        self._stage = Stage(self.simulator, episode, description, seed, self._referee, crowd)
 
     def _referee_of(self, judged: Episode) -> Referee:
         return Referee(judged, self.simulator.truth, hand_of(self._description), self._people)

@@ -18,6 +18,9 @@ BLIND = {
     "robot.kidnapped": {"distance": 1.0, "turn": 1.0},
     "doorway.blocked": {},
     "person.in_way": {},
+    "person.in_doorway": {},
+    "person.follows": {},
+    "person.reaches_over": {},
     "object.moved": {"distance": 0.08},
     "object.knocked_over": {},
     "object.removed": {},
@@ -45,7 +48,7 @@ def test_every_fault_is_possible_in_the_rooms_and_tested_here(blind):
 def test_a_world_without_goal_and_doorways_says_so(fault):
     episode = plain_episode()
     stage = Stage(Simulator(fetch(), episode, 0, render=False), episode, fetch(), 0, None)
-    assert possible(stage) == ("robot.kidnapped", "person.in_way")
+    assert possible(stage) == ("robot.kidnapped", "person.in_way", "person.follows")
     with pytest.raises(FaultError, match="'plain' has no goal"):
         prepare(stage, fault("object.removed"))
     with pytest.raises(FaultError, match="'plain' has no doorways"):
@@ -86,7 +89,8 @@ def test_nothing_is_put_where_something_is(blind, happening, step, name, seed):
     stage = blind(seed)
     truth = stage.simulator.truth
     with happening(stage, name, **BLIND[name]):
-        before = {b: truth.pose(b) for b in truth.bodies if b != stage.goal.item}
+        moving = {stage.goal.item, *stage.crowd.names}
+        before = {b: truth.pose(b) for b in truth.bodies if b not in moving}
         step(stage, 4)
         for body, pose in before.items():
             assert abs(truth.pose(body).position - pose.position).max() < 2e-3, body

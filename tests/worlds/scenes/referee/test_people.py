@@ -34,7 +34,8 @@ class Truth:
 )
 def test_a_push_of_the_moving_robot_is_an_incident(base: tuple[float, float], joint: float) -> None:
     truth = Truth()
-    people = PushedPeople(truth, frozenset({"anna"}))  # type: ignore[arg-type]
+    people = PushedPeople(truth)  # type: ignore[arg-type]
+    people.watch("anna")
     truth.speed, truth.joint = base, joint
     people.observe(1.0, [Touch("base_link", "anna", 10.0)])
     assert people.incidents() == []
@@ -48,6 +49,7 @@ def test_a_push_of_the_moving_robot_is_an_incident(base: tuple[float, float], jo
 
 
 def test_who_walks_into_a_standing_robot_was_not_pushed() -> None:
-    people = PushedPeople(Truth(), frozenset({"anna"}))  # type: ignore[arg-type]
+    people = PushedPeople(Truth())  # type: ignore[arg-type]
+    people.watch("anna")
     people.observe(1.0, [Touch("base_link", "anna", 300.0)])
     assert (people.pushed, people.met, people.incidents()) == (0.0, 300.0, [])

@@ -7,12 +7,10 @@ import math
 import numpy as np
 
 from momantu_bt.geometry import Pose2D
-from momantu_worlds.sapien.faults.stage import Stage
+from momantu_worlds.sapien.faults.stage import WALL, Stage
 from momantu_worlds.scenes.geometry.plane import Passages, Rectangle, passages
 from momantu_worlds.scenes.geometry.prisms import Prism
 
-WALL = "wall"
-"""Category of what bounds the rooms."""
 AIR = 0.05
 """Clearance of the base from everything, m."""
 BORDER = 1.0

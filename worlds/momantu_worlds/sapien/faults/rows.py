@@ -16,6 +16,9 @@ from momantu_worlds.sapien.faults.misses_object import MissesObject
 from momantu_worlds.sapien.faults.moved import Moved
 from momantu_worlds.sapien.faults.occupied import Occupied
 from momantu_worlds.sapien.faults.person import PersonInWay
+from momantu_worlds.sapien.faults.person_follows import PersonFollows
+from momantu_worlds.sapien.faults.person_in_doorway import PersonInDoorway
+from momantu_worlds.sapien.faults.person_reaches import PersonReaches
 from momantu_worlds.sapien.faults.phantom import Phantom
 from momantu_worlds.sapien.faults.removed import Removed
 from momantu_worlds.sapien.faults.stage import Stage
@@ -37,8 +40,11 @@ ROWS: Mapping[str, Row] = MappingProxyType(
         "camera.misses_object": Row(MissesObject, (_GOAL,)),
         "camera.phantom": Row(Phantom, (_GOAL,)),
         "robot.kidnapped": Row(Kidnapped),
-        "doorway.blocked": Row(DoorwayBlocked, (_GOAL, _DOORWAYS)),
+        "doorway.blocked": Row(DoorwayBlocked, (_DOORWAYS, _GOAL)),
         "person.in_way": Row(PersonInWay),
+        "person.in_doorway": Row(PersonInDoorway, (_DOORWAYS, _GOAL)),
+        "person.follows": Row(PersonFollows),
+        "person.reaches_over": Row(PersonReaches, (_GOAL,)),
         "object.moved": Row(Moved, (_GOAL,)),
         "object.knocked_over": Row(KnockedOver, (_GOAL,)),
         "object.removed": Row(Removed, (_GOAL,)),
@@ -72,4 +78,7 @@ def prepare(stage: Stage, fault: Fault) -> Effect:
     """
     if fault.name not in ROWS:
         raise FaultError(f"no world fault {fault.name!r}; there are: {', '.join(ROWS)}")
-    return ROWS[fault.name].make(stage, fault)
+    row = ROWS[fault.name]
+    for need in row.needs:
+        need(stage)
+    return row.make(stage, fault)

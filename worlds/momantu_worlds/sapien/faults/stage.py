@@ -12,7 +12,11 @@ from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
-from momantu_worlds.sapien.faults.robot_room import RobotRoom
+from momantu_worlds.sapien.people.crowd import Crowd
+from momantu_worlds.sapien.people.floor import PeopleFloor
+from momantu_worlds.sapien.people.walker import Walker
+from momantu_worlds.sapien.robot_room import RobotRoom
+from momantu_worlds.scenes.catalogue.person import CATEGORY as FIGURE
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Gap, Goal, Picture
 from momantu_worlds.scenes.geometry.prisms import Prism, body_prism, part_prisms
 from momantu_worlds.scenes.geometry.support import UprightCylinder
@@ -27,12 +31,17 @@ fingers."""
 
 LIFTED = 0.01
 """Least height of a held object above what is below it, m."""
+WALL = "wall"
+"""Category of what bounds the rooms."""
+OUTDOORS = 10.0
+"""How far people walk from the robot's start where no walls stand, along x and y, m."""
 
 
 class Stage:
     """Ground truth, and the means to change it.
 
-    simulator, episode, description, referee (None in a run without one): of this run.
+    simulator, episode, description, referee (None in a run without one), crowd (None where nobody
+    walks about): of this run.
     """
 
     def __init__(
@@ -42,10 +51,11 @@ class Stage:
         description: RobotDescription,
         seed: int,
         referee: Referee | None,
+        crowd: Crowd | None = None,
     ) -> None:
         self.simulator, self.episode, self.description = simulator, episode, description
         self.referee = referee
-        self._seed = seed
+        self._seed, self._crowd = seed, crowd
         self._room = RobotRoom(simulator.model)
 
     def random(self, fault: Fault) -> np.random.Generator:
@@ -142,18 +152,44 @@ class Stage:
             self.referee.relocated(self.goal.item)
 
     def add(self, body: Body) -> str:
-        """Add a body to the world; the referee watches it if it is loose.
+        """Add a body to the world; the referee watches it if it is loose, or a person.
 
         Returns: its name, with a number added if another body has that name.
         """
-        names = {other.name for other in self.bodies}
-        taken = (f"{body.name}_{number}" for number in count(2))
-        name = next(n for n in chain([body.name], taken) if n not in names)
+        name = self.free_name(body.name)
         body = dataclasses.replace(body, name=name)
         self.simulator.add(body)
         if self.referee is not None:
             self.referee.added(body)
+            if body.category == FIGURE:
+                self.referee.admitted(name)
         return name
+
+    def free_name(self, wanted: str) -> str:
+        """A name for a body: the wanted one, with a number added if another body has it."""
+        names = {other.name for other in self.bodies}
+        taken = (f"{wanted}_{number}" for number in count(2))
+        return next(name for name in chain([wanted], taken) if name not in names)
+
+    @property
+    def crowd(self) -> Crowd:
+        """The people of this run, to whom others can be added."""
+        if self._crowd is None:
+            start, indoors = self.episode.start, any(b.category == WALL for b in self.bodies)
+            ends = [(start.x + far, start.y + far) for far in (-OUTDOORS, OUTDOORS)]
+            floor = PeopleFloor(self.episode.bodies, () if indoors else ends)
+            self._crowd = Crowd(self.simulator, floor)
+        return self._crowd
+
+    def admit(self, walker: Walker) -> None:
+        """Let somebody walk from now on; the referee watches how hard they are pushed."""
+        self.crowd.join(walker, walker.name)
+        if self.referee is not None:
+            self.referee.admitted(walker.name)
+
+    def dismiss(self, name: str) -> None:
+        """Take away somebody who was admitted."""
+        self.crowd.leave(name)
 
     def remove(self, name: str) -> None:
         """Remove an added body."""

@@ -27,10 +27,15 @@ class _Push:
 class PushedPeople:
     """The largest force on anybody while the robot moved, and while it stood, N; and incidents."""
 
-    def __init__(self, truth: GroundTruth, names: frozenset[str]) -> None:
-        self._truth, self._names = truth, names
+    def __init__(self, truth: GroundTruth) -> None:
+        self._truth = truth
         self.pushed = self.met = 0.0
+        self._names: set[str] = set()
         self._pushes: dict[tuple[str, str], list[_Push]] = {}
+
+    def watch(self, name: str) -> None:
+        """Watch the body of one more person."""
+        self._names.add(name)
 
     def observe(self, now: float, contacts: Iterable[TouchingForce]) -> None:
         """Record the contacts of the tick that ended at `now`, s."""

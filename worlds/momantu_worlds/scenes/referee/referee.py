@@ -62,7 +62,9 @@ class Referee:
         self._shift, self._tilt, self._bump = Peak(), Peak(), Peak()
         self._now = 0.0
         self._incidents = Incidents(episode, truth, hand)
-        self._people = PushedPeople(truth, people) if people else None
+        self._people: PushedPeople | None = None
+        for name in sorted(people):
+            self.admitted(name)
         truth.watch_contacts()
 
     def observe(self, now: float) -> None:
@@ -93,6 +95,12 @@ class Referee:
             self._others[body.name] = body.map_from_body
             self._poses.pop(body.name, None)
         self._incidents.added(body)
+
+    def admitted(self, name: str) -> None:
+        """Somebody came whom the robot must not push; name: of the body."""
+        if self._people is None:
+            self._people = PushedPeople(self._truth)
+        self._people.watch(name)
 
     def removed(self, name: str) -> None:
         """An added body has left the world."""

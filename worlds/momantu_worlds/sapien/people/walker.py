@@ -213,8 +213,22 @@ class Walker:
         return float(self._random.uniform(*bounds))
 
 
+class Leader(Protocol):
+    """Whom somebody follows."""
+
+    @property
+    def at(self) -> Point:
+        """Where it is."""
+        ...
+
+    @property
+    def speed(self) -> float:
+        """How fast it goes, m/s."""
+        ...
+
+
 class Follower(Walker):
-    """A member of a group: walks behind the one before it, and stops when that one stops."""
+    """Walks behind the one before it, and stops when that one stops."""
 
     def __init__(
         self,
@@ -222,7 +236,7 @@ class Follower(Walker):
         floor: Floor,
         start: Point,
         random: np.random.Generator,
-        before: Walker,
+        before: Leader,
     ) -> None:
         super().__init__(actor, floor, start, random)
         self._before = before

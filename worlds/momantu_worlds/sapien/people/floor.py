@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_worlds.people.walker import RADIUS, Point
+from momantu_worlds.sapien.people.walker import RADIUS, Point
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.plane import Passages, passages
 from momantu_worlds.scenes.geometry.prisms import body_prism

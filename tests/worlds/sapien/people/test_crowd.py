@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from momantu_worlds.people.crowd import Crowd
 from momantu_worlds.robots import fetch
+from momantu_worlds.sapien.people.actors import crowd_of
+from momantu_worlds.sapien.people.crowd import Crowd
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Actor, Body, Box, Episode, Part
 from momantu_worlds.testing import plain_episode
@@ -28,10 +29,7 @@ def _episode(*actors: Actor) -> Episode:
 def _simulated(*actors: Actor, seed: int = 0) -> tuple[Simulator, Crowd]:
     episode = _episode(*actors)
     simulator = Simulator(fetch(), episode, seed, render=False)
-    crowd = Crowd(simulator, episode, seed)
-    simulator.before_tick.append(crowd.plan)
-    simulator.before_step.append(crowd.move)
-    return simulator, crowd
+    return simulator, crowd_of(simulator, episode, seed)
 
 
 def test_bodies_are_where_people_are_and_the_same_seed_is_the_same() -> None:
