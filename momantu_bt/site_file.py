@@ -1,4 +1,4 @@
-"""The site file beside a map: names of places and surfaces that a robot was taught."""
+"""The site file beside a map: names of places and surfaces that a robot was taught, and zones."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from momantu_bt.descriptions.quantities import Angle, Length, Size
 from momantu_bt.descriptions.reading import DescriptionError, Reading, read_text
 from momantu_bt.descriptions.validation import checked
+from momantu_bt.descriptions.zones import ZoneNote
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import Surface
 
@@ -69,6 +70,7 @@ class Names(BaseModel):
     start: PlanarPose
     places: dict[Name, PlanarPose] = {}
     surfaces: dict[Name, TaughtSurface] = {}
+    zones: dict[Name, ZoneNote] = {}
 
     @classmethod
     def of(
@@ -96,6 +98,11 @@ class Names(BaseModel):
                 f"    sides: {_row(surface.sides)}",
                 *(["    round: true"] if surface.round else []),
             ]
+        lines += ["zones:"] if self.zones else []
+        for name, zone in self.zones.items():
+            corners = ", ".join(_row(corner) for corner in zone.corners)
+            lines += [f"  {name}:", f"    kind: {zone.kind}", f"    corners: [{corners}]"]
+            lines += [] if zone.speed is None else [f"    speed: {zone.speed:.4f}"]
         return _HEAD + "\n".join(lines) + "\n"
 
 

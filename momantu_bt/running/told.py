@@ -65,6 +65,7 @@ class Told:
             site.nowhere(),
             places=MappingProxyType({n: Pose2D(*pose) for n, pose in names.places.items()}),
             surfaces=MappingProxyType({n: s.surface() for n, s in names.surfaces.items()}),
+            zones=MappingProxyType({n: z.zone for n, z in names.zones.items()}),
         )
         return replace(named, start=Pose2D(*names.start))
 
@@ -146,7 +147,7 @@ def _names_file(path: Path) -> Path:
     what = f"the folder has no {NAMES}" if path.is_dir() else "there is no such file or folder"
     raise InputError(
         f"--names {path}: {what}; names are in the {NAMES} of a map's folder, which "
-        "`momantu-bt map` writes: start, places and surfaces"
+        "`momantu-bt map` writes: start, places and surfaces, and zones of your own"
     )
 
 

@@ -77,6 +77,37 @@ def test_without_a_map_nothing_lies_anywhere_but_what_is_named(office: Path) -> 
     assert told.of(site).objects == site.objects
 
 
+ZONES = """zones:
+  stairs: {kind: keep_out, corners: [[0, 0], [1 m, 0], [1, 1]]}
+  crossing: {kind: slow, speed: 30 cm/s, corners: [[0, 0], [1, 0], [1, 1], [0, 1]]}
+"""
+
+
+def test_zones_come_with_the_names_and_are_written_back(office: Path) -> None:
+    (office / "site.yaml").write_text(NAMES + ZONES)
+    told = read_told(str(office), str(office))
+    assert told is not None
+    assert told.names is not None
+    seen = told.of(ExampleWorld().site)
+    assert {name: zone.kind for name, zone in seen.zones.items()} == {
+        "stairs": "keep_out",
+        "crossing": "slow",
+    }
+    assert seen.zones["crossing"].speed == pytest.approx(0.3)
+    (office / "site.yaml").write_text(told.names.text())
+    again = read_told(None, str(office))
+    assert again is not None
+    assert again.names is not None
+    assert again.names.text() == told.names.text()
+    assert again.names.zones == told.names.zones
+
+
+def test_a_wrong_zone_is_told_with_its_line(office: Path) -> None:
+    (office / "site.yaml").write_text(NAMES + ZONES.replace("speed: 30 cm/s, ", ""))
+    with pytest.raises(SiteFileError, match=r"site.yaml:7:.*a slow zone needs its `speed`"):
+        read_told("none", str(office))
+
+
 def test_an_overhang_map_beside_it_is_used(office: Path) -> None:
     write_map(office / "overhang.yaml", MapPicture(np.full((40, 60), 254), 0.05, (-1.0, -0.5)))
     told = read_told(str(office), None)

@@ -43,7 +43,7 @@ COLORS = 3
 """Numbers of a colour that count; the fourth is alpha."""
 
 INSTEAD: Mapping[str, str] = {
-    "actor": "left out; people who walk are the fault `person_walks`",
+    "actor": "left out; write people into the world file as `actors`, with their stops",
     "attenuation": "a lamp's light falls with the square of the distance",
     "atmosphere": "left out; no sensor of ours feels the air",
     "audio": "left out",
