@@ -13,9 +13,9 @@ from momantu_bt.goal import Goal
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import Site, Verdict, Video, View, WorldError
+from momantu_worlds.sapien.actors import crowd_of
 from momantu_worlds.sapien.faults.rows import possible, prepare
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.people.actors import crowd_of
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.arrange.episode import goal_of

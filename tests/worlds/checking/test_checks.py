@@ -11,6 +11,7 @@ from momantu_worlds.checking.measures import Measures
 from momantu_worlds.checking.run import CHECKS
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import (
+    Actor,
     Body,
     Box,
     Cylinder,
@@ -263,3 +264,17 @@ def test_zones_to_keep_out_of_are_where_the_robot_does_not_get() -> None:
     assert zoned((1.4, -1.1), (1.6, -1.1), (1.5, -0.9)) == {"place-blocked"}
     closed = zoned((-0.2, -0.6), (0.2, -0.6), (0.2, 0.6), (-0.2, 0.6))
     assert {"place-unreachable", "door-blocked", "surface-unreachable"} <= closed
+
+
+def acted(*stops: tuple[float, float]) -> set[str]:
+    """What is found where somebody walks between these stops."""
+    anna = Actor("anna", stops, (0.8, 0.9), (0.0, 1.0))
+    return {code for code, _ in all_codes(changed(actors=(anna,)))}
+
+
+def test_people_can_stand_at_their_stops_and_walk_between_them() -> None:
+    x, y = EPISODE.start.x, EPISODE.start.y
+    assert acted((-2.0, -2.0), (2.0, -2.0)) == set()
+    assert acted((-2.0, -2.0), (2.0, 2.0)) == {"stop-blocked"}
+    assert acted((-2.0, -2.0), (9.0, -2.0)) == {"stops-apart"}
+    assert acted((x + 0.5, y), (x, y + 0.5)) == {"stops-at-start"}

@@ -11,6 +11,7 @@ from momantu_bt.formats.problems import Severity
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import WorldError
 from momantu_worlds.checking.access import doorways, places, start, surfaces
+from momantu_worlds.checking.actors import actors
 from momantu_worlds.checking.goals import goals
 from momantu_worlds.checking.measures import Measures, measured
 from momantu_worlds.checking.overlaps import overlaps
@@ -28,6 +29,7 @@ CHECKS: tuple[Callable[[Scenario], Iterable[FindingAtKeys]], ...] = (
     doorways,
     surfaces,
     zones,
+    actors,
     tags,
     upright,
     goals,

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from momantu_worlds.people.walker import BEHIND, STAND, TOO_NEAR
 from momantu_worlds.sapien.faults.doorways import doorways_ahead, opening
 from momantu_worlds.sapien.faults.person_reaches import DRAWS_BACK
 from momantu_worlds.sapien.faults.tops import item_top
-from momantu_worlds.sapien.people.walker import BEHIND, STAND, TOO_NEAR
 from momantu_worlds.scenes.geometry.prisms import body_prism
 
 from momantu_bt.geometry import Pose2D

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from momantu_bt.fault import Fault
+from momantu_worlds.people.walker import Walker
 from momantu_worlds.sapien.faults.parameters import only
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.people.walker import Walker
 from momantu_worlds.scenes.catalogue.person import person_body
 from momantu_worlds.scenes.geometry.prisms import body_prism
 

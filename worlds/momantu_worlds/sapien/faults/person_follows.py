@@ -6,10 +6,10 @@ import math
 
 from momantu_bt.fault import FaultError
 from momantu_bt.geometry import Pose2D
+from momantu_worlds.people.walker import BEHIND, Follower, Point, Walker
 from momantu_worlds.sapien.faults.figures import Person, has_room
 from momantu_worlds.sapien.faults.floor_space import walls_between
 from momantu_worlds.sapien.faults.stage import Stage
-from momantu_worlds.sapien.people.walker import BEHIND, Follower, Point, Walker
 from momantu_worlds.scenes.geometry.bodies import Actor
 
 TURNS = tuple(math.radians(turn) for turn in (180, 150, -150, 120, -120, 90, -90))

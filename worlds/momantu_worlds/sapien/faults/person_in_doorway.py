@@ -6,9 +6,9 @@ import math
 
 from momantu_bt.fault import FaultError
 from momantu_bt.geometry import Pose2D
+from momantu_worlds.people.walker import Point, Walker
 from momantu_worlds.sapien.faults.doorways import doorways_ahead, opening
 from momantu_worlds.sapien.faults.figures import Person, has_room
-from momantu_worlds.sapien.people.walker import Point, Walker
 from momantu_worlds.scenes.geometry.bodies import Actor
 
 ASIDE = 0.6

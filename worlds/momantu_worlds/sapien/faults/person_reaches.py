@@ -6,10 +6,10 @@ import math
 
 from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_axis_angle
+from momantu_worlds.people.walker import Walker
 from momantu_worlds.sapien.faults.figures import Person, has_room
 from momantu_worlds.sapien.faults.stage import Stage
 from momantu_worlds.sapien.faults.tops import TableTop, item_top, obstacles
-from momantu_worlds.sapien.people.walker import Walker
 from momantu_worlds.scenes.catalogue.person import CATEGORY, CLOTHES
 from momantu_worlds.scenes.geometry.bodies import Actor, Body, Cylinder, Part
 from momantu_worlds.scenes.geometry.prisms import Prism, body_prism

@@ -12,9 +12,9 @@ from momantu_bt.fault import Fault, FaultError
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_bt.world import seeded
-from momantu_worlds.sapien.people.crowd import Crowd
-from momantu_worlds.sapien.people.floor import PeopleFloor
-from momantu_worlds.sapien.people.walker import Walker
+from momantu_worlds.people.floor import PeopleFloor
+from momantu_worlds.people.walker import Walker
+from momantu_worlds.sapien.crowd import Crowd
 from momantu_worlds.sapien.robot_room import RobotRoom
 from momantu_worlds.scenes.catalogue.person import CATEGORY as FIGURE
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Gap, Goal, Picture

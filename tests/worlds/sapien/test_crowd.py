@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from momantu_worlds.robots import fetch
-from momantu_worlds.sapien.people.actors import crowd_of
-from momantu_worlds.sapien.people.crowd import Crowd
+from momantu_worlds.sapien.actors import crowd_of
+from momantu_worlds.sapien.crowd import Crowd
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Actor, Body, Box, Episode, Part
 from momantu_worlds.testing import plain_episode

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_worlds.sapien.people.walker import RADIUS, Point
+from momantu_worlds.people.walker import RADIUS, Point
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.plane import Passages, passages
 from momantu_worlds.scenes.geometry.prisms import body_prism
@@ -21,6 +21,8 @@ TALL = 1.8
 """What begins above this, m, is over everybody's head."""
 ROUND = 0.75
 """Distance at which people who look for a way pass others, m: robots too."""
+FROM_START = 1.5
+"""Least distance of a person from the robot at first, m."""
 NEAR = 0.5
 """A stop may be moved by so much to where there is room, m."""
 

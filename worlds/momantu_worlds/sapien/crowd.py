@@ -6,9 +6,9 @@ import sapien
 
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import TICK
+from momantu_worlds.people.floor import PeopleFloor
+from momantu_worlds.people.walker import Point, Seen, Walker
 from momantu_worlds.sapien.config import SUB_STEPS
-from momantu_worlds.sapien.people.floor import PeopleFloor
-from momantu_worlds.sapien.people.walker import Point, Seen, Walker
 from momantu_worlds.sapien.poses import pose_of
 from momantu_worlds.sapien.robot_room import RobotRoom
 from momantu_worlds.sapien.simulator import Simulator

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 from momantu_bt.world import WorldError, seeded
-from momantu_worlds.sapien.people.crowd import Crowd
-from momantu_worlds.sapien.people.floor import PeopleFloor
-from momantu_worlds.sapien.people.walker import BEHIND, RADIUS, Follower, Point, Walker
+from momantu_worlds.people.floor import FROM_START, PeopleFloor
+from momantu_worlds.people.walker import BEHIND, RADIUS, Follower, Point, Walker
+from momantu_worlds.sapien.crowd import Crowd
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.scenes.geometry.bodies import Actor, Episode
 
-FROM_START = 1.5
-"""Least distance of a person from the robot at first, m."""
 RING = 16
 """Directions around the first of a group in which the others are put."""
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from momantu_worlds.sapien.people.floor import PeopleFloor
-from momantu_worlds.sapien.people.walker import BEHIND, RADIUS, Follower, Seen, Walker
+from momantu_worlds.people.floor import PeopleFloor
+from momantu_worlds.people.walker import BEHIND, RADIUS, Follower, Seen, Walker
 from momantu_worlds.scenes.geometry.bodies import Actor, Body, Box, Part
 from momantu_worlds.scenes.geometry.plane import Rectangle
 from momantu_worlds.scenes.geometry.prisms import body_prism

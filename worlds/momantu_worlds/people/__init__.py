@@ -1,0 +1,1 @@
+"""People who walk about: where they can walk, and how they move."""
