@@ -157,7 +157,8 @@ class Pick(Skill):
         arrived = yield from arm.follow(plan.approach, "approaching", watch)
         if not arrived:
             self.planning_scene.touched()
-            yield from arm.back_off(arm.hand.approach)
+            yield from arm.settle()
+            yield from arm.follow(arm.reversed(plan.approach), "drawing back")
             raise Failure("GRASP_MISSED", "the hand met something before it was around the object")
 
     def _close(

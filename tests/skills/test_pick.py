@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.arm import Arm
 from momantu_skills.pick import Pick
 
 from momantu_bt.claim import Holding, ObjectAt
@@ -189,6 +190,29 @@ def test_fingers_that_close_on_nothing_miss(tabletop: type[Tabletop], scene_of: 
     assert robot.gripper_width > 0.09
     distance = np.linalg.norm(robot.odom_from_hand.position - real.position)
     assert distance > 0.08
+
+
+def test_a_hand_that_meets_something_draws_back_the_way_it_came(
+    tabletop: type[Tabletop], scene_of: SceneOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where what it met seems to be in every other way."""
+    robot, told = tabletop(), list[float]()
+    thing = robot.detected()
+
+    def away() -> float:
+        return float(np.linalg.norm(robot.odom_from_hand.position - thing.pose.position))
+
+    def met(*_: Any) -> Any:
+        return lambda *_: told.append(away()) or away() < 0.08
+
+    monkeypatch.setattr("momantu_skills.pick.bump", met)
+    monkeypatch.setattr(Arm, "_way_out", lambda *_: False)
+    result = pick(robot, scene_of(robot), thing)
+    assert result.code == "GRASP_MISSED"
+    assert "before it was around the object" in result.failure.message
+    assert min(told) < 0.08
+    assert away() == pytest.approx(told[0], abs=0.01)
+    assert robot.gripper_width > 0.09
 
 
 def test_what_stays_behind_has_slipped(tabletop: type[Tabletop], scene_of: SceneOf) -> None:

@@ -76,10 +76,11 @@ class Lost(Vehicle):
         """What was seen may all be tall."""
         return Tall(self.costmap.field, self.costmap.frame)
 
-    def _see_depth(self, pose: Pose2D, laser: float) -> None:
+    def sense(self, *, depth: bool = True) -> None:
+        """Sense as others do. Low things are told in the map, and these would be in odom."""
         kept = self._scene.low_things
-        super()._see_depth(pose, laser)
-        self._scene.low_things = kept  # they are in the map, these would be in odom
+        super().sense(depth=depth)
+        self._scene.low_things = kept
 
 
 def look_elsewhere(

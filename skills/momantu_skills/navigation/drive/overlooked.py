@@ -38,8 +38,7 @@ class Overlooked:
         if len(points) and len(hits):
             off, _ = cKDTree(hits).query(points, distance_upper_bound=EXPLAINED)
             points = points[off > EXPLAINED]
-        to_odom = odom_from_base.transform()
-        fresh, bare = (_gathered(to_odom.apply(_flat(own))[:, :2]) for own in (points, floor))
+        fresh, bare = (_gathered(odom_from_base.apply(own)) for own in (points, floor))
         seen = np.concatenate([_keys(fresh), _keys(bare)])
         there = np.vstack([self._there[~np.isin(_keys(self._there), seen)], fresh])
         far = np.hypot(*(there - (odom_from_base.x, odom_from_base.y)).T)
@@ -47,7 +46,7 @@ class Overlooked:
 
     def near(self, odom_from_base: Pose2D, reach: float) -> Array:
         """Points (n, 2) within `reach` m of the base, base frame, m."""
-        points = odom_from_base.inverse().transform().apply(_flat(self._there))[:, :2]
+        points = odom_from_base.inverse().apply(self._there)
         return np.asarray(points[np.hypot(points[:, 0], points[:, 1]) < reach])
 
 
@@ -62,7 +61,3 @@ def _keys(points: Array) -> NDArray[np.int64]:
     """A number (n,) for the cell of each point (n, 2)."""
     cells = np.floor(points / CELL).astype(np.int64)
     return np.asarray(cells[:, 0] * 1_000_003 + cells[:, 1])
-
-
-def _flat(points: Array) -> Array:
-    return np.column_stack([points, np.zeros(len(points))])

@@ -206,7 +206,7 @@ def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D
 def _recover(vehicle: Vehicle, attempt: int) -> Trip:
     """Recover: clear the costmap and look again; then also back up; then also turn."""
     yield from vehicle.stop("recover")
-    vehicle.costmap.clear_ahead(vehicle.pose(), vehicle.blind)
+    vehicle.costmap.clear_ahead(vehicle.pose(), vehicle.sight.blind)
     vehicle.sense()
     if attempt >= 1:
         yield from back_off(vehicle, 0.3, "recover")

@@ -1,4 +1,4 @@
-"""The vehicle: what the base senses, and the only code that commands it."""
+"""The vehicle: where the base is and what it occupies, and the only code that commands it."""
 
 from __future__ import annotations
 
@@ -9,18 +9,11 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 import numpy as np
 
 from momantu_bt.frames import MAP, ODOM
-from momantu_bt.geometry import Array, Pose2D, Transform
+from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.marker import Grid, Line
 from momantu_bt.messages import BaseVelocity, JointPositions
-from momantu_bt.robot import (
-    CAMERA_CARRIER,
-    BaseLimits,
-    CameraSensor,
-    Robot,
-    read_camera,
-    read_laser,
-)
+from momantu_bt.robot import CAMERA_CARRIER, BaseLimits, Robot
 from momantu_bt.service import HeldObject, Localization, offers
 from momantu_bt.skill import Run, Skill
 from momantu_skills.navigation.config import NavigationConfig
@@ -28,12 +21,11 @@ from momantu_skills.navigation.drive.body import Body, BodyScene
 from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.own import OwnMap
-from momantu_skills.navigation.map.sensing import Rays, obstacles_and_floor
 from momantu_skills.perception.camera.aiming import aim
 
 with lazily():
     from momantu_skills.navigation.control import footprint, guard
-    from momantu_skills.navigation.drive import overlooked, people
+    from momantu_skills.navigation.drive import sight
     from momantu_skills.navigation.map import costmap, heights, rolling
 
 if TYPE_CHECKING:
@@ -45,8 +37,6 @@ POSTURE_CHANGE = 0.02
 """Joint motion after which the footprint is computed again, rad (or m)."""
 OUTLINE_CHANGE = 0.01
 """Change of the footprint after which its discs are computed again, m."""
-TURN_BETWEEN_LOOKS = 0.8
-"""Turn that counts like `depth_every` metres of driving, rad: about half of a camera's view."""
 HANDS_OVER = 0.03
 """Height above a surface's nominal top from which arm and load count as being over it, m."""
 PATH_HEIGHT = 0.03
@@ -55,12 +45,6 @@ COSTLESS = 0.5
 """Clearance from which a cell is drawn as free, m."""
 SHOWN = 3.0
 """Time for which a path and the costmap are shown, s; a base that drives plans more often."""
-LASER_DOUBT = 0.03
-"""How far below its plane a laser may look over a thing, m: noise of heights, tilt of the laser."""
-FEW = 0.02
-"""Share of a picture's points that may be nearer than where it begins to show things."""
-UNDER = 0.05
-"""Distance beside the base up to which nothing lies where it stands, m: one cell."""
 SLOW_NEAR = 2.5
 """Distance of slow zones whose limit manoeuvres expect, m: they are planned from not so far."""
 UNKNOWN_COST = 3.0
@@ -77,11 +61,9 @@ Speed: TypeAlias = tuple[float, float, float]
 class Vehicle:
     """Sense once per control period and drive for one. Poses are in the map unless said otherwise.
 
-    The laser is assumed to be fixed to the base.
-
     base_discs: discs of the base alone, which collides with every obstacle. low_discs: with the
     parts of arm and load that are lower than the surface that the base drives up to. discs: with
-    all of arm and load. glides: whether the base drives sideways.
+    all of arm and load. glides: whether the base drives sideways. sight: what it senses.
     """
 
     def __init__(
@@ -113,14 +95,13 @@ class Vehicle:
             shared = cast(OwnMap, localization).costmap
         self.mapped = skill.site.map_file is not None or offers(localization, OwnMap)
         self.unknown_cost = UNKNOWN_COST
-        self._earlier = scene.low_things if shared is None else np.zeros((0, 2))
+        earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
         self.costmap = self._own_costmap(goals) if shared is None else shared
         self._slows = self.costmap.zones.slow
-        self._base_frame = description.base_frame
         outline = np.array(description.footprint)
         self.base_discs = self.low_discs = self.discs = footprint.discs(outline)
         self.half_width = footprint.half_width(outline)
@@ -130,15 +111,10 @@ class Vehicle:
         self._tall: tuple[GridMap, heights.Tall] | None = None
         self._posture: Array | None = None
         self._held: HeldObject | None = None
-        self._base_from_laser: Transform | None = None
-        self._sees = any(isinstance(s, CameraSensor) for s in description.sensors.values())
-        resolved = description.resolve_use(CAMERA_CARRIER) if self._sees else None
+        self.sight = sight.Sight(skill, robot, scene, config, self.costmap, earlier)
+        resolved = description.resolve_use(CAMERA_CARRIER) if self.sight.pictures else None
         self._head = None if description.eye_in_hand or not gazes else resolved
         self._gaze = self._gaze_goal()
-        self._hits = np.zeros((0, 2))
-        self._people = people.People(self.costmap)
-        self._overlooked = overlooked.Overlooked()
-        self.blind = 0.0
         self.blocked_for = 0.0
         self.blocked_total = 0.0
 
@@ -191,30 +167,8 @@ class Vehicle:
 
     def sense(self, *, depth: bool = True) -> None:
         """Add a scan to the costmap, and a depth picture if the last one was taken far behind."""
-        pose = self.pose()
         self._follow_footprint()
-        scan = read_laser(self._robot)
-        if self._base_from_laser is None:
-            self._base_from_laser = self._frames.lookup(self._base_frame, scan.frame, scan.stamp)
-        rays = Rays.from_scan(scan, self._base_from_laser)
-        self._hits = rays.points()
-        self._body.look(self._robot.state(), self._hits)
-        if len(self._earlier):
-            self._lay_earlier(pose)
-        self.costmap.see_laser(pose, rays)
-        self._people.see(scan.stamp, self.odom_from_base(), self.map_from_odom(), rays)
-        if depth and self._look_due(pose):
-            self._see_depth(pose, float(self._base_from_laser.position[2]))
-        self.costmap.refresh(pose)
-
-    def _lay_earlier(self, pose: Pose2D) -> None:
-        """Mark the low things that earlier pictures showed; none lies where the base stands."""
-        there, self._earlier = self._earlier, np.zeros((0, 2))
-        own = pose.inverse().transform().apply(np.column_stack([there, np.zeros(len(there))]))
-        off = np.linalg.norm(own[:, None, :2] - self.base_discs[:, :2], axis=2)
-        under = (off < self.base_discs[:, 2] + UNDER).any(axis=1)
-        self.costmap.lay(there[~under])
-        self.costmap.refresh()
+        self.sight.see(self.map_from_odom(), self._body, self.base_discs, depth=depth)
 
     def _follow_footprint(self) -> None:
         state = self._robot.state()
@@ -230,31 +184,6 @@ class Vehicle:
         low = np.asarray(self._scene.footprint(state, self._low))
         if not _same(low, self._low_outline):
             self._low_outline, self.low_discs = low, footprint.discs(low)
-
-    def _look_due(self, pose: Pose2D) -> bool:
-        if not self._sees:
-            return False
-        looked = self.costmap.looked
-        if looked is None:
-            return True
-        turned = abs((looked.inverse() @ pose).yaw)
-        way = looked.distance_to(pose) / self.config.depth_every
-        return way + turned / TURN_BETWEEN_LOOKS > 1.0
-
-    def _see_depth(self, pose: Pose2D, laser: float) -> None:
-        """Add a depth picture; laser: the height of the laser's plane, m."""
-        image = read_camera(self._robot)
-        state = self._robot.state()
-        obstacles, floor = obstacles_and_floor(
-            image, self._frames, self._robot.description, state, self._scene, self.config
-        )
-        self._overlooked.see(self.odom_from_base(), obstacles, floor, self._hits)
-        there = np.column_stack([pose.apply(obstacles), obstacles[:, 2]])
-        self.costmap.see_depth(there, pose.apply(floor), laser - LASER_DOUBT)
-        self.costmap.looked = pose
-        shown = np.hypot(*np.vstack([obstacles[:, :2], floor]).T)
-        self.blind = float(np.quantile(shown, FEW)) if len(shown) else self.blind
-        self._scene.low_things = self.costmap.low_things()
 
     def _gaze_goal(self) -> JointPositions | None:
         """Return where a head looks while driving; None for a camera on the arm or a fixed one."""
@@ -279,9 +208,7 @@ class Vehicle:
         load nothing that stands at their height.
         """
         command, speed = (linear, angular, lateral), self.speed()
-        hits = np.vstack([self._hits, self._overlooked.near(self.odom_from_base(), guard.NEAR)])
-        if len(self.costmap.movers):
-            hits = np.vstack([hits, self._people.expected(self.pose())])
+        hits = self.sight.near(self.map_from_odom())
         share = guard.safe_share(command, speed, self._limits, self.base_discs, hits)
         if share > 0.0:
             share = min(share, self._body.share(command, speed))
