@@ -18,7 +18,9 @@ from momantu_bt.cli.shared.options import (
     Jobs,
     Judged,
     Kept,
+    MapTold,
     MaxTime,
+    NamesTold,
     RayAddress,
     Robot,
     Runner,
@@ -56,6 +58,8 @@ def compare(
         str | None, typer.Option(help="A world's name. Default: the trees' own.")
     ] = None,
     robot: Robot = None,
+    map_: MapTold = None,
+    names: NamesTold = None,
     set_: Annotated[
         list[str] | None,
         typer.Option("--set", help="key=value: a value of both trees' blackboards."),
@@ -87,7 +91,16 @@ def compare(
     chosen = bench_setup.choose(record, RECORD, "--record")
     board = given.given_values(set_ or [], values)
     how = bench_setup.HowToRun(
-        world, robot, board, max_time, referee, episode_limit, chosen, goal=given.given_goal(goal)
+        world,
+        robot,
+        board,
+        max_time,
+        referee,
+        episode_limit,
+        chosen,
+        goal=given.given_goal(goal),
+        map=map_,
+        names=names,
     )
     plans = [bench_setup.plan_of(tree, parse_seeds(seeds), how)[0] for tree in (tree_a, tree_b)]
     if plans[0].wanted == plans[1].wanted:

@@ -83,3 +83,13 @@ def test_a_tree_and_itself_are_no_comparison(small: str, tmp_path: Path, capsys:
     assert compare(small, small, "--seeds", "0:2", "--out", tmp_path / "out") == 2
     assert "are the same; name two different trees" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_map_that_is_not_there_is_told_before_anything_runs(
+    small: str, tmp_path: Path, capsys: Out
+) -> None:
+    other, out = tmp_path / "worse.yaml", tmp_path / "out"
+    other.write_text(Path(small).read_text().replace("attempts: 2", "attempts: 1"))
+    assert compare(small, other, "--map", tmp_path / "nowhere", "--out", out) == 2
+    assert "there is no such folder or file" in capsys.readouterr().err
+    assert not out.exists()
