@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
-from typing import Any, ClassVar
+from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.mapping.own import Mapping
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.drive.until import until
 
 with lazily():
     from momantu_skills.manipulation import tucking
@@ -159,7 +160,7 @@ class _Tour:
         to = trip.Destination(lambda: [stand], TOLERANCE)
         try:
             way = trip.travel(self._base, self._controller, to, recovery=False)
-            yield from _until(way, self._seen(prospect))
+            yield from until(way, self._seen(prospect))
         except Failure as failure:
             if failure.code not in trip.RECOVERABLE:
                 raise
@@ -211,24 +212,3 @@ class _Tour:
                 share=left.share,
                 frontier=[x, y],
             ) from self._last
-
-
-def _until(way: Generator[Any, Any, Any], over: Callable[[], bool]) -> Run:
-    """Run a drive to its end, or until `over()` after one of its ticks."""
-    go: Callable[[Any], Any] = way.send
-    value: Any = None
-    while True:
-        try:
-            step = go(value)
-        except StopIteration:
-            return
-        try:
-            value, go = (yield step), way.send
-        except Failure as failure:
-            value, go = failure, way.throw
-        except GeneratorExit:
-            way.close()
-            raise
-        if isinstance(step, str) and over():
-            way.close()
-            return

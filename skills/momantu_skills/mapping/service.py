@@ -17,7 +17,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import NavigationConfig
-from momantu_skills.navigation.localize.confidence import sigmas
+from momantu_skills.navigation.localize.confidence import published
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
 
@@ -212,16 +212,8 @@ class MappingService(Service):
         self._rest_scans = RESET_SCANS
 
     def published(self) -> Mapping[str, Any]:
-        """quality, sigma_position in m, sigma_yaw in rad, pose in the map, known in m2, loops."""
-        position, yaw = sigmas(self.covariance)
-        return {
-            "quality": self.quality,
-            "sigma_position": position,
-            "sigma_yaw": yaw,
-            "pose": self.map_from_base,
-            "known": self.known,
-            "loops": self.loops,
-        }
+        """What localization tells, known in m2, and loops."""
+        return {**published(self), "known": self.known, "loops": self.loops}
 
     @property
     def known(self) -> float:

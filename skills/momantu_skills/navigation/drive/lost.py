@@ -21,6 +21,7 @@ from momantu_skills.navigation.control.mppi import Mppi
 from momantu_skills.navigation.drive.body import BodyScene
 from momantu_skills.navigation.drive.cruise import cruise, leave
 from momantu_skills.navigation.drive.route import Route, planned
+from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.telling_apart import disagreement
 from momantu_skills.navigation.map.heights import Tall
@@ -103,7 +104,7 @@ def look_elsewhere(
         return False
     been.append(route.stand)
     try:
-        yield from _until(_go(vehicle, mppi, route), done)
+        yield from until(_go(vehicle, mppi, route), done)
     except Failure as failure:
         if failure.code not in ("PATH_BLOCKED", "NO_PATH", "NO_PROGRESS"):
             raise
@@ -114,19 +115,6 @@ def look_elsewhere(
 def _go(vehicle: Lost, mppi: Mppi, route: Route) -> Drive:
     yield from leave(vehicle, route.heading(vehicle.pose()))
     yield from cruise(vehicle, mppi, route, TOLERANCE)
-
-
-def _until(drive: Drive, done: Callable[[], bool]) -> Drive:
-    answer: Any = None
-    while True:
-        try:
-            asked = drive.send(answer)
-        except StopIteration:
-            return
-        answer = yield asked
-        if done():
-            drive.close()
-            return
 
 
 def _choose(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from momantu_bt.claim import BaseAt
 from momantu_bt.geometry import Array
@@ -23,6 +24,17 @@ def sigmas(covariance: Array) -> tuple[float, float]:
     a, b, c = float(covariance[0, 0]), float(covariance[0, 1]), float(covariance[1, 1])
     widest = 0.5 * (a + c) + math.sqrt(0.25 * (a - c) ** 2 + b * b)
     return math.sqrt(max(widest, 0.0)), math.sqrt(max(float(covariance[2, 2]), 0.0))
+
+
+def published(localization: Localization) -> dict[str, Any]:
+    """What localization tells: quality, sigma_position in m, sigma_yaw in rad, pose in the map."""
+    position, yaw = sigmas(localization.covariance)
+    return {
+        "quality": localization.quality,
+        "sigma_position": position,
+        "sigma_yaw": yaw,
+        "pose": localization.map_from_base,
+    }
 
 
 def is_localized(localization: Localization, quality: float = QUALITY) -> bool:

@@ -12,7 +12,7 @@ from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
 from momantu_skills.navigation.config import LocalizationConfig
-from momantu_skills.navigation.localize.confidence import sigmas
+from momantu_skills.navigation.localize.confidence import published
 from momantu_skills.navigation.map.believed import believed_maps, corrections
 from momantu_skills.navigation.map.sensing import Rays
 
@@ -149,11 +149,5 @@ class LocalizationService(Service):
         self._rest_scans = self._config.rest_scans
 
     def published(self) -> Mapping[str, Any]:
-        """quality, sigma_position in m, sigma_yaw in rad, pose in the map."""
-        position, yaw = sigmas(self.covariance)
-        return {
-            "quality": self.quality,
-            "sigma_position": position,
-            "sigma_yaw": yaw,
-            "pose": self.map_from_base,
-        }
+        """See `confidence.published`."""
+        return published(self)
