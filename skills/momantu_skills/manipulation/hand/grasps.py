@@ -13,6 +13,7 @@ import numpy as np
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 from momantu_bt.robot import EndEffector
+from momantu_skills.manipulation.hand.seating import Seat
 
 AZIMUTHS = 24
 """Number of approach directions around an upright cylinder."""
@@ -94,10 +95,14 @@ class Grasp:
 
 
 class _Fingers(NamedTuple):
-    """Planes around each finger, in the grasp frame: fully open, and closed on the object."""
+    """Planes around each finger, in the grasp frame: fully open, and closed on the object.
+
+    seat: where along them a round object is held firmly; None for others.
+    """
 
     open: Sequence[Array]
     closed: Sequence[Array]
+    seat: Seat | None
 
 
 def grasps_for(
@@ -116,14 +121,18 @@ def grasps_for(
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
     edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
-    Round things slide out from between knuckles.
+    Round things slide out from between knuckles: see `Seat`.
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
     fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
+    is_box = thing.shape == "box"
+    seat = None
+    if fitting and closing is not None and not is_box:
+        seat = Seat(hand, fitting[0][0] / 2, closing)
     for width, direction, top in fitting:
-        closed = closing(width) if closing is not None and thing.shape == "box" else ()
-        both = _Fingers(fingers, closed)
+        closed = closing(width) if closing is not None and is_box else ()
+        both = _Fingers(fingers, closed, seat)
         if top:
             found += _from_above(thing, hand, both, direction, width)
         else:
@@ -175,6 +184,8 @@ def _from_side(
         back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
         if back is None:
             continue
+        if fingers.seat is not None:
+            back = fingers.seat.best(back, farthest)
         penalty = TILT_PENALTY * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
