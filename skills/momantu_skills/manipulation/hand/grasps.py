@@ -50,6 +50,9 @@ TOP_PENALTY = 3.0
 """Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
 """Cost per rad of tilt, s: the same disadvantages to a smaller extent."""
+EDGE_PENALTY = 30.0
+"""Cost per rad of tilt, s, where edges of the pads hold a cylinder: they touch it along a line
+where it is upright between them, else at a point, about which it turns. 15 degrees cost 8 s."""
 SWING_PENALTY = 150.0
 """Cost, s per metre, of holding an object above its middle: it swings when the hand turns, and what
 hangs otherwise in the hand than it was grasped is set down leaning. A can of 13 cm that was held at
@@ -184,9 +187,10 @@ def _from_side(
         back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
         if back is None:
             continue
-        if fingers.seat is not None:
-            back = fingers.seat.best(back, farthest)
-        penalty = TILT_PENALTY * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
+        held = back if fingers.seat is None else fingers.seat.best(back, farthest)
+        tilting = TILT_PENALTY if held == back else EDGE_PENALTY
+        back = held
+        penalty = tilting * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 
