@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,6 +15,8 @@ from momantu_bt.lazy import lazily
 from momantu_bt.robots import RobotFileError, read_robot
 
 with lazily():
+    from momantu_skills.manipulation.model import arm_model
+    from momantu_skills.robot_setup.check import pads
     from momantu_skills.robot_setup.find import proposal
     from momantu_skills.robot_setup.urdf import prepare
     from momantu_skills.robot_setup.write import summary, writer
@@ -65,7 +68,8 @@ def setup(
     _check_free(path, force)
     text, fill_in = _text(found, folder)
     write_whole(path, text, folders=True)
-    wrong = _read_again(path)
+    wrong, notes = _read_again(path)
+    found = dataclasses.replace(found, notes=(*found.notes, *notes))
     if as_json:
         typer.echo(json.dumps(_plain(found, path, fill_in, wrong), indent=2))
     else:
@@ -95,13 +99,15 @@ def _text(found: proposal.Proposal, folder: Path) -> tuple[str, tuple[str, ...]]
     return writer.robot_file(found, folder), writer.missing(found)
 
 
-def _read_again(path: Path) -> str:
-    """The reader's problems with the file; empty if it accepts it."""
+def _read_again(path: Path) -> tuple[str, tuple[str, ...]]:
+    """The reader's problems with the file, empty if it accepts it, and notes on the hand."""
     try:
-        read_robot(path)
+        description = read_robot(path)
     except RobotFileError as error:
-        return str(error)
-    return ""
+        return str(error), ()
+    if not description.has_arm or description.end_effector is None:
+        return "", ()
+    return "", tuple(f.message for f in pads.check_pads(arm_model.ArmModel(description)))
 
 
 def _plain(

@@ -13,6 +13,7 @@ import numpy as np
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 from momantu_bt.robot import EndEffector
+from momantu_skills.manipulation.hand.seating import Seat
 
 AZIMUTHS = 24
 """Number of approach directions around an upright cylinder."""
@@ -49,6 +50,9 @@ TOP_PENALTY = 3.0
 """Cost of a grasp from above, s: the object cannot be carried upright, and the hand hides it."""
 TILT_PENALTY = 1.5
 """Cost per rad of tilt, s: the same disadvantages to a smaller extent."""
+EDGE_PENALTY = 30.0
+"""Cost per rad of tilt, s, where edges of the pads hold a cylinder: they touch it along a line
+where it is upright between them, else at a point, about which it turns. 15 degrees cost 8 s."""
 SWING_PENALTY = 150.0
 """Cost, s per metre, of holding an object above its middle: it swings when the hand turns, and what
 hangs otherwise in the hand than it was grasped is set down leaning. A can of 13 cm that was held at
@@ -94,10 +98,14 @@ class Grasp:
 
 
 class _Fingers(NamedTuple):
-    """Planes around each finger, in the grasp frame: fully open, and closed on the object."""
+    """Planes around each finger, in the grasp frame: fully open, and closed on the object.
+
+    seat: where along them a round object is held firmly; None for others.
+    """
 
     open: Sequence[Array]
     closed: Sequence[Array]
+    seat: Seat | None
 
 
 def grasps_for(
@@ -116,14 +124,18 @@ def grasps_for(
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
     edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
-    Round things slide out from between knuckles.
+    Round things slide out from between knuckles: see `Seat`.
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
     fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
+    is_box = thing.shape == "box"
+    seat = None
+    if fitting and closing is not None and not is_box:
+        seat = Seat(hand, fitting[0][0] / 2, closing)
     for width, direction, top in fitting:
-        closed = closing(width) if closing is not None and thing.shape == "box" else ()
-        both = _Fingers(fingers, closed)
+        closed = closing(width) if closing is not None and is_box else ()
+        both = _Fingers(fingers, closed, seat)
         if top:
             found += _from_above(thing, hand, both, direction, width)
         else:
@@ -175,7 +187,10 @@ def _from_side(
         back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
         if back is None:
             continue
-        penalty = TILT_PENALTY * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
+        held = back if fingers.seat is None else fingers.seat.best(back, farthest)
+        tilting = TILT_PENALTY if held == back else EDGE_PENALTY
+        back = held
+        penalty = tilting * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 

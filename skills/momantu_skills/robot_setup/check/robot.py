@@ -21,6 +21,7 @@ from momantu_skills.robot_setup.check.body import (
     check_poses,
 )
 from momantu_skills.robot_setup.check.hand import check_hand, check_reach, check_stand_off
+from momantu_skills.robot_setup.check.pads import check_pads
 from momantu_skills.robot_setup.check.sensors import check_sensors
 from momantu_skills.robot_setup.find.base import find_stand
 from momantu_skills.robot_setup.urdf.body import Body
@@ -45,11 +46,13 @@ def check_robot(description: RobotDescription) -> list[Finding]:
         *check_stand_off(description),
         *check_abilities(description, stand, virtual=_has_virtual(description)),
     ]
-    if description.has_arm:
-        findings += check_poses(description, ArmModel(description))
+    model = ArmModel(description) if description.has_arm else None
+    if model is not None:
+        findings += check_poses(description, model)
     if description.end_effector is not None:
         findings += check_hand(description, body)
-    if description.has_arm and description.end_effector is not None:
+    if model is not None and description.end_effector is not None:
+        findings += check_pads(model)
         findings += check_reach(description, stand)
     return _located(description, findings)
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import Working
+from momantu_skills.manipulation.arm import SWING
+from momantu_skills.manipulation.config import HandConfig
 from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 
@@ -40,6 +42,12 @@ ROOM = 0.13
 """Distance between the footprint and a table's edge, m."""
 BESIDE = 0.08
 """Least distance of objects from a table's edge, m."""
+APPROACH = HandConfig().approach
+"""How far behind a grasp the hand begins and ends, m."""
+TURN = SWING
+"""How far an arm with few joints may turn its hand from its line of reach on that way, rad."""
+LONG = 0.1
+"""Least difference of nearest and farthest distance, m, at which a reach is taken."""
 LOOK_BACK = 0.18
 """Additional distance of the robot for looking, m."""
 
@@ -129,6 +137,11 @@ def _beside(solver: LimbSolver, distances: Array, stand: Stand) -> Reach | None:
     good = _useful(heights, distances, stand_off)
     if not len(good):
         return None
+    if solver.group.few:
+        straight = _straight(solver, distances, stand.floor, heading, lateral)
+        led = _useful(straight, distances, stand_off)
+        if len(led) and distances[led[-1]] - distances[led[0]] > LONG:
+            shares, good = straight, led
     span = _span(distances, shares, good)
     return Reach(
         distances,
@@ -142,6 +155,28 @@ def _beside(solver: LimbSolver, distances: Array, stand: Stand) -> Reach | None:
         _breadth(solver, span[1], stand.floor, heading, lateral) if solver.group.few else None,
         solver.group.freedoms,
     )
+
+
+def _straight(
+    solver: LimbSolver, distances: Array, floor: float, heading: float, lateral: float
+) -> Array:
+    """Share (k,) of the tables' heights at which an arm with few joints comes and goes level.
+
+    A telescope that grasps as near as it can has no room to go back, and a hand that it turned
+    aside instead meets the arm. What such an arm carries upright it grasped level.
+    """
+    turn = _line(heading, lateral)
+    targets = np.array([turn @ _poses(distance, floor, (0.0,), ()) for distance in distances])
+    flat = targets.reshape(-1, 4, 4)
+    behind = flat @ Transform((-APPROACH, 0.0, 0.0)).matrix
+    good = np.logical_and(*(solver.reaches(poses, SEEDS, TURN) for poses in (flat, behind)))
+    return np.asarray(good.reshape(len(distances), len(HEIGHTS)).mean(axis=1))
+
+
+def _line(heading: float, lateral: float) -> Array:
+    """base_from_reach (4, 4): x along the line of reach."""
+    line = Working(stand_off=1.0, look_off=1.0, heading=heading, lateral=lateral).base_from_reach
+    return Transform.from_rpy((line.x, line.y, 0.0), (0.0, 0.0, line.yaw)).matrix
 
 
 def _breadth(
@@ -167,8 +202,7 @@ def reached(
 
     Returns the share of grasps (k,), and the share of the tables' heights with one of them (k,).
     """
-    line = Working(stand_off=1.0, look_off=1.0, heading=heading, lateral=lateral).base_from_reach
-    turn = Transform.from_rpy((line.x, line.y, 0.0), (0.0, 0.0, line.yaw)).matrix
+    turn = _line(heading, lateral)
     yaws = (0.0,) if solver.group.few else YAWS
     targets = np.array([turn @ _poses(distance, floor, yaws) for distance in distances])
     flat = solver.reaches(targets.reshape(-1, 4, 4), SEEDS)
@@ -181,9 +215,11 @@ def _cm(values: tuple[float, float, float]) -> tuple[float, float, float]:
     return a, b, c
 
 
-def _poses(distance: float, floor: float, yaws: Sequence[float]) -> Array:
+def _poses(
+    distance: float, floor: float, yaws: Sequence[float], pitches: Sequence[float] = PITCHES[1:]
+) -> Array:
     """base_from_grasp (heights, ways, 4, 4) straight ahead: level at some yaws, or pitched."""
-    ways = [(0.0, yaw) for yaw in yaws] + [(pitch, 0.0) for pitch in PITCHES[1:]]
+    ways = [(0.0, yaw) for yaw in yaws] + [(pitch, 0.0) for pitch in pitches]
     return np.array(
         [
             [

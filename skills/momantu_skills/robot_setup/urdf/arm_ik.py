@@ -46,13 +46,16 @@ class LimbSolver:
                 postures.append(q)
         return [self.named(q) for q in postures]
 
-    def reaches(self, poses: Array, seeds: int) -> Array:
-        """(m,) which of poses (m, 4, 4) are reached from any of so many random starts."""
-        return np.asarray(self._solve(poses, self.starts(seeds))[1].any(axis=1))
+    def reaches(self, poses: Array, seeds: int, turn: float = math.inf) -> Array:
+        """(m,) which of poses (m, 4, 4) are reached from any of so many random starts.
 
-    def _solve(self, poses: Array, starts: Array) -> tuple[Array, Array]:
+        turn: about the vertical, rad, by which a limb with few joints may miss them.
+        """
+        return np.asarray(self._solve(poses, self.starts(seeds), turn)[1].any(axis=1))
+
+    def _solve(self, poses: Array, starts: Array, turn: float = math.inf) -> tuple[Array, Array]:
         if self.upright and self.group.few:
-            return self.group.solve_upright(poses, poses[:, :3, 3], starts, math.inf)
+            return self.group.solve_upright(poses, poses[:, :3, 3], starts, turn)
         return self.group.solve(poses, starts)
 
     def place(self, posture: Mapping[str, float]) -> Transform:
