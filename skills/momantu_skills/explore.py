@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
-from typing import Any, ClassVar
+from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from momantu_skills.navigation.config import NavigationConfig
 
 with lazily():
     from momantu_skills.manipulation import tucking
-    from momantu_skills.mapping import frontiers
+    from momantu_skills.mapping import frontiers, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import route, trip, vehicle
     from momantu_skills.navigation.plan import goals, planner
@@ -46,7 +46,8 @@ class Explore(Skill):
 
     SUCCESS: the robot knows all the floor that it can get to on known floor, or `share` of it.
     What it cannot get to, and cannot see from where it can, stays unknown: the floor behind a gap
-    that is too narrow, for example. It drives on known floor only.
+    that is too narrow, for example. It drives on known floor only. What the camera shows on the way
+    is noted: `discover_surface` begins with the tops of tables among it.
     """
 
     share: int = In(
@@ -102,7 +103,9 @@ class Explore(Skill):
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
         base.unknown_cost = math.inf
-        return _Tour(base, mppi.Mppi(robot.description.base, config, self.random), self.mapping)
+        controller = mppi.Mppi(robot.description.base, config, self.random)
+        watch = watching.Watch(self, robot, self.mapping, self.planning_scene)
+        return _Tour(base, controller, self.mapping, watch)
 
     def _show(self, left: frontiers.Outlook) -> None:
         best = left.prospects[0]
@@ -123,8 +126,15 @@ class _Tour:
     near to, with the last failure.
     """
 
-    def __init__(self, base: vehicle.Vehicle, controller: mppi.Mppi, mapping: Mapping) -> None:
+    def __init__(
+        self,
+        base: vehicle.Vehicle,
+        controller: mppi.Mppi,
+        mapping: Mapping,
+        watch: watching.Watch,
+    ) -> None:
         self._base, self._controller, self._mapping = base, controller, mapping
+        self._watch = watch
         self._looked: list[tuple[float, float]] = []
         self._failed: list[tuple[float, float]] = []
         self._last: Failure | None = None
@@ -159,7 +169,7 @@ class _Tour:
         to = trip.Destination(lambda: [stand], TOLERANCE)
         try:
             way = trip.travel(self._base, self._controller, to, recovery=False)
-            yield from _until(way, self._seen(prospect))
+            yield from watching.until(way, self._seen(prospect))
         except Failure as failure:
             if failure.code not in trip.RECOVERABLE:
                 raise
@@ -181,6 +191,7 @@ class _Tour:
 
         def seen() -> bool:
             nonlocal asked
+            self._watch.look()
             if self._base.now() - asked < LOOK_EVERY:
                 return False
             asked = self._base.now()
@@ -211,24 +222,3 @@ class _Tour:
                 share=left.share,
                 frontier=[x, y],
             ) from self._last
-
-
-def _until(way: Generator[Any, Any, Any], over: Callable[[], bool]) -> Run:
-    """Run a drive to its end, or until `over()` after one of its ticks."""
-    go: Callable[[Any], Any] = way.send
-    value: Any = None
-    while True:
-        try:
-            step = go(value)
-        except StopIteration:
-            return
-        try:
-            value, go = (yield step), way.send
-        except Failure as failure:
-            value, go = failure, way.throw
-        except GeneratorExit:
-            way.close()
-            raise
-        if isinstance(step, str) and over():
-            way.close()
-            return
