@@ -25,6 +25,7 @@ from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.mapping.own import Mapping
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
     from momantu_skills.gaze import surveys
@@ -120,6 +121,7 @@ class DiscoverSurface(Skill):
                 found = yield from self._inspect(robot, base, controller, seen)
                 if found is not None:
                     self.plane = _plane(found, self.clock.now())
+                    self._left(robot, base)
                     return
                 continue
             view = yield from compute(partial(self._next, robot, base), CHOOSING)
@@ -155,11 +157,16 @@ class DiscoverSurface(Skill):
         )
         out = np.hypot(base.discs[:, 0], base.discs[:, 1]) + base.discs[:, 2]
         stands = costmap.field > float(out.max()) + config.margin
-        grid = frontiers.thick(costmap)
+        grid, remaining = self._left(robot, base)
+        return coverage.best_view(grid, remaining, cost, stands, self._done)
+
+    def _left(self, robot: Robot, base: vehicle.Vehicle) -> tuple[GridMap, coverage.Mask]:
+        """The map with its obstacles grown, and which of their outlines were not looked at."""
+        grid = frontiers.thick(base.costmap)
         remaining = coverage.left(grid, self.mapping.sightings.looks, self._fov(robot))
         share = 1.0 - float(remaining.sum()) / max(float(coverage.outlines(grid).sum()), 1.0)
         self.looked_share = math.floor(100.0 * share)
-        return coverage.best_view(grid, remaining, cost, stands, self._done)
+        return grid, remaining
 
     def _fov(self, robot: Robot) -> float:
         return SHOWN * robot.description.camera()[1].horizontal_fov
@@ -188,10 +195,9 @@ class DiscoverSurface(Skill):
         self, robot: Robot, base: vehicle.Vehicle
     ) -> Generator[str | Compute, Any, None]:
         """Turn the camera to what was not looked at yet, as far as it turns."""
-        here, fov, notes = base.pose(), self._fov(robot), self.mapping.sightings
+        here, fov = base.pose(), self._fov(robot)
         self.mapping.refresh()
-        grid = frontiers.thick(base.costmap)
-        remaining = coverage.left(grid, notes.looks, fov)
+        grid, remaining = self._left(robot, base)
         ways = coverage.directions(coverage.in_sight(grid, remaining, here.x, here.y), fov)
         snapshots: list[Snapshot] = []
         for way in sorted(ways, key=lambda way: math.remainder(way - here.yaw, 2 * math.pi)):
@@ -277,7 +283,8 @@ class DiscoverSurface(Skill):
             for point in surveys.looks_over(self, robot, corners, LOOKS):
                 snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
                 if snapshot is not None:
-                    views.append(pictures.see(snapshot, region, self.planning_scene))
+                    view = pictures.see(snapshot, region, self.planning_scene, stride=1)
+                    views.append(view)
             top = yield from compute(partial(self._measured, views, now), SEEING)
             if top is None:
                 return None
