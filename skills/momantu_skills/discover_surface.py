@@ -60,6 +60,8 @@ GROWN = 0.1
 """By how much an edge grows that is looked at once more, m."""
 NEARBY = 1.5
 """Distance from a top's middle within which its parts lie, m."""
+NEARLY = 0.02
+"""Largest error of a height that was seen from afar, m."""
 HEIGHT = 0.03
 """Largest error of the measured height, m."""
 
@@ -226,7 +228,7 @@ class DiscoverSurface(Skill):
 
     def _fits(self, top: tops.Top) -> bool:
         """Whether a top may be one that is looked for, as far as it was seen."""
-        low, high = self.lowest - sightings.LEVEL / 2, self.highest + sightings.LEVEL / 2
+        low, high = self.lowest - NEARLY, self.highest + NEARLY
         return low < top.height < high and min(top.size) > self.least_edge - tops.ALIKE
 
     def _inspect(
@@ -250,7 +252,7 @@ class DiscoverSurface(Skill):
             f"({what.pose.x:.2f}, {what.pose.y:.2f}){': ' if why else ''}{why}"
         )
         if why:
-            notes.refused.append(what)
+            notes.refused += [seen] if found is None else [seen, found]
             return None
         return found
 

@@ -104,7 +104,8 @@ def directions(around: Array, fov: float) -> list[float]:
 
     around: as of `in_sight`. From right to left as seen from the middle of a gap.
     """
-    rest, chosen = around.copy(), []
+    rest = around.copy()
+    chosen: list[float] = []
     while True:
         yaw, gain = _facing(rest, fov / 2)
         if gain < LEAST_GAIN or len(chosen) == RAYS:
