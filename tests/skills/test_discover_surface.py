@@ -26,6 +26,7 @@ from tests.skills.scenery.flat import ROOMS, START, Box, FlatRobot, FlatScene
 from tests.skills.scenery.table import SceneOf
 
 SIZE, HEIGHT = (0.6, 1.2), 0.7
+NARROW = (0.25, 1.2)
 BENCH = (-1.0, 1.9)
 """Where a bench stands in the room of the start."""
 
@@ -60,7 +61,7 @@ def look() -> Look:
         **inputs: Any,
     ) -> Any:
         description = small_robot()
-        camera = description.sensors["camera"].model_copy(update={"width": 320, "height": 240})
+        camera = description.sensors["camera"].model_copy(update={"width": 240, "height": 180})
         sensors = {**description.sensors, "camera": camera}
         robot = FlatRobot(START, 1, 0.0, description.model_copy(update={"sensors": sensors}))
         robot.boxes = [*ROOMS, *boxes]
@@ -97,15 +98,11 @@ def test_a_bench_is_found_and_measured_and_the_robot_stands_before_it(look: Look
     assert robot.nearest > 0.0
 
 
-@pytest.mark.parametrize(
-    ("size", "height"),
-    [(SIZE, 0.2), (SIZE, 1.2), ((0.25, 1.2), HEIGHT)],
-)
-def test_what_is_too_low_too_high_or_too_narrow_is_none(
-    look: Look, size: tuple[float, float], height: float
-) -> None:
-    result, _, _ = look([outline(*BENCH, size)], [board(*BENCH, size, height)])
+def test_what_is_too_low_too_high_or_too_narrow_is_none(look: Look) -> None:
+    boards = [board(-1.0, 2.2, height=0.2), board(-3.4, 1.0, height=1.2), board(0.0, -2.2, NARROW)]
+    result, _, _ = look([], boards)
     assert result.code == "NO_NEW_SURFACE", result.explain()
+    assert result.failure.data["refused"] == []
 
 
 def test_one_that_has_a_name_is_not_found_again(look: Look) -> None:
