@@ -363,6 +363,16 @@ class WorldTexts(Protocol):
 
 
 @runtime_checkable
+class MeasuredWorld(Protocol):
+    """A world in which somebody can measure where the robot stands at first."""
+
+    @property
+    def start(self) -> Pose2D:
+        """Where its base truly stands as the episode begins, in the frame of the site."""
+        ...
+
+
+@runtime_checkable
 class AboutWorld(Protocol):
     """A world's entry that can describe more of the world than its site."""
 

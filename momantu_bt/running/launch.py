@@ -37,7 +37,7 @@ from momantu_bt.skill import Skill
 from momantu_bt.tree.check.named_world import world_of
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.registry import Registry
-from momantu_bt.world import Site, World, WorldError
+from momantu_bt.world import MeasuredWorld, Site, World, WorldError
 
 Watch: TypeAlias = Callable[[Executor], Sequence[Observer]]
 
@@ -138,9 +138,14 @@ def _assembled(prepared: Prepared, stack: ExitStack) -> tuple[Executor, Stage, R
 
 def site_of(prepared: Prepared, world: World | None) -> Site | None:
     """What the robot is told; None without a world."""
-    if world is None or prepared.told is None:
-        return None if world is None else world.site
-    site = prepared.told.of(world.site)
+    if world is None:
+        return None
+    site = world.site
+    if prepared.options.measured_start and isinstance(world, MeasuredWorld):
+        site = replace(site, start=world.start, start_sigma=(0.0, 0.0))
+    if prepared.told is None:
+        return site
+    site = prepared.told.of(site)
     if (doubt := off_the_map(prepared.told, site.start)) is not None:
         prepared.options.remark(doubt)
     return site

@@ -14,7 +14,7 @@ from momantu_bt.world import World
 
 _RECORDED = (
     *("world", "robot", "goal", "max_time", "realtime", "referee", "audit", "faults"),
-    *("map", "names", "patience"),
+    *("map", "names", "measured_start", "patience"),
 )
 
 
@@ -28,7 +28,9 @@ class RunOptions:
     such as "can on table_b beside tag", a mapping, or a list of these.
     map: the floor plan that the robot is told in the place of the world's: a folder that
     `momantu-bt map` wrote, a map_server YAML file, or "none". names: a site file, or such a folder,
-    with the places and surfaces that it is told in the place of the world's.
+    with the places and surfaces that it is told in the place of the world's. measured_start: the
+    robot is told exactly where it stands at first, as by a person who puts it down to make a map;
+    in a world that does not know it, what the site says.
     seed: selects the variation of the episode. values: initial keys of the root's board, as with
     `--set`. substitute: a file of rules that replace nodes. include: further tree files, or folders
     of them, that have trees which the tree runs. tolerant: nodes, trees and keys that stand
@@ -51,6 +53,7 @@ class RunOptions:
     goal: Any = None
     map: str | None = None
     names: str | None = None
+    measured_start: bool = False
     seed: int = 0
     values: Mapping[str, Any] = field(default_factory=dict)
     substitute: Path | None = None

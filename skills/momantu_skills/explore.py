@@ -23,7 +23,7 @@ from momantu_skills.navigation.drive.until import until
 
 with lazily():
     from momantu_skills.manipulation import tucking
-    from momantu_skills.mapping import frontiers
+    from momantu_skills.mapping import frontiers, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import route, trip, vehicle
     from momantu_skills.navigation.plan import goals, planner
@@ -47,7 +47,8 @@ class Explore(Skill):
 
     SUCCESS: the robot knows all the floor that it can get to on known floor, or `share` of it.
     What it cannot get to, and cannot see from where it can, stays unknown: the floor behind a gap
-    that is too narrow, for example. It drives on known floor only.
+    that is too narrow, for example. It drives on known floor only. What the camera shows on the way
+    is noted: `discover_surface` begins with the tops of tables among it.
     """
 
     share: int = In(
@@ -103,7 +104,9 @@ class Explore(Skill):
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
         base.unknown_cost = math.inf
-        return _Tour(base, mppi.Mppi(robot.description.base, config, self.random), self.mapping)
+        controller = mppi.Mppi(robot.description.base, config, self.random)
+        watch = watching.Watch(self, robot, self.mapping, self.planning_scene)
+        return _Tour(base, controller, self.mapping, watch)
 
     def _show(self, left: frontiers.Outlook) -> None:
         best = left.prospects[0]
@@ -124,8 +127,15 @@ class _Tour:
     near to, with the last failure.
     """
 
-    def __init__(self, base: vehicle.Vehicle, controller: mppi.Mppi, mapping: Mapping) -> None:
+    def __init__(
+        self,
+        base: vehicle.Vehicle,
+        controller: mppi.Mppi,
+        mapping: Mapping,
+        watch: watching.Watch,
+    ) -> None:
         self._base, self._controller, self._mapping = base, controller, mapping
+        self._watch = watch
         self._looked: list[tuple[float, float]] = []
         self._failed: list[tuple[float, float]] = []
         self._last: Failure | None = None
@@ -182,6 +192,7 @@ class _Tour:
 
         def seen() -> bool:
             nonlocal asked
+            self._watch.look()
             if self._base.now() - asked < LOOK_EVERY:
                 return False
             asked = self._base.now()

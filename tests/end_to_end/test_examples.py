@@ -40,6 +40,7 @@ OUTPUTS: dict[str, Any] = {
     "spots": (POSE,),
     "known": 50.0,
     "known_share": 100,
+    "looked_share": 100,
 }
 Ends = Callable[[int, dict[str, Any]], str | None]
 
@@ -276,6 +277,39 @@ def test_the_search_goes_on_and_says_when_it_is_nowhere() -> None:
     report = go("search_surfaces", script)
     assert script.given("navigate", "in_front_of") == ["table_b", "table_a"]
     assert codes(report)[-1] == "NOT_FOUND_ANYWHERE"
+
+
+def test_exploring_ends_its_search_with_the_tables_that_have_can_and_tag() -> None:
+    script = Script(
+        detect_object=["OBJECT_NOT_FOUND", None], find_apriltag=["TAG_NOT_SEEN", "TAG_NOT_SEEN"]
+    )
+    report = go("explore_and_bring", script)
+    assert report.status == "SUCCESS", report.failure
+    assert script.given("name_place", "name") == ["start", "table_1", "table_2", "table_3"]
+    assert script.given("detect_object", "on") == ["table_1", "table_2"]
+    assert script.given("find_apriltag", "on")[:3] == ["table_1", "table_2", "table_3"]
+    assert script.given("explore", "share") == [90]
+    assert "table_3" in script.given("navigate", "in_front_of")
+    assert (report.blackboard["can_on"], report.blackboard["tag_on"]) == ("table_2", "table_3")
+
+
+def test_what_was_not_found_is_looked_for_from_elsewhere() -> None:
+    script = Script(
+        discover_surface=[None, "NO_NEW_SURFACE", "NO_NEW_SURFACE"],
+        detect_object=["OBJECT_NOT_FOUND", None],
+    )
+    report = go("explore_and_bring", script)
+    assert report.status == "SUCCESS", report.failure
+    assert script.given("explore", "share") == [90, 100]
+    assert script.given("navigate", "side")[0] == 1
+    assert (report.blackboard["can_on"], report.blackboard["tag_on"]) == ("table_1", "table_1")
+
+
+def test_a_building_without_the_can_is_told() -> None:
+    script = Script(discover_surface=["NO_NEW_SURFACE", "NO_NEW_SURFACE"], explore=["NO_PATH"] * 3)
+    report = go("explore_and_bring", script)
+    assert said(report, "NOT_FOUND_ANYWHERE") == "can on '', tag on ''"
+    assert "pick" not in script.names()
 
 
 def test_jobs_are_done_in_the_order_of_the_list() -> None:

@@ -63,5 +63,5 @@ def test_a_record_keeps_the_choices_of_a_run_and_the_name_of_an_open_world() -> 
     assert told["max_time"] == 5.0
     assert set(told) == {
         *("world", "robot", "max_time", "realtime", "referee", "audit", "faults", "patience"),
-        *("goal", "map", "names"),
+        *("goal", "map", "names", "measured_start"),
     }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from momantu_bt.claim import Sentence
 from momantu_bt.fault import Effect, Fault
-from momantu_bt.geometry import Transform
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.goal import Goal
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import RobotDescription
@@ -61,6 +61,11 @@ class SapienWorld:
     def site(self) -> Site:
         """The site of this episode."""
         return self._episode.site
+
+    @property
+    def start(self) -> Pose2D:
+        """See `momantu_bt.world.MeasuredWorld`."""
+        return self._episode.start
 
     @property
     def robot(self) -> SimulatedRobot:

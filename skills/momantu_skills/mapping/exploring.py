@@ -44,6 +44,9 @@ def explore(
 ) -> Explored:
     """Run the tree, and save what there is if it does not do so itself.
 
+    Who makes a map puts the robot down and measures where: the map lies in the frame of the site,
+    so that the site's names hold on it too.
+
     told: hears the clock, s, and the service after each tick.
 
     Raises:
@@ -61,6 +64,7 @@ def explore(
         TREE,
         world=world,
         robot=robot,
+        measured_start=True,
         seed=seed,
         values={"folder": str(folder)},
         max_time=LONGEST,

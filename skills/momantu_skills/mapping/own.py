@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 from momantu_skills.navigation.map.own import OwnMap
 
 if TYPE_CHECKING:
+    from momantu_skills.mapping.sightings import Sightings
     from momantu_skills.mapping.survey import Survey
 
 
@@ -17,6 +18,8 @@ class Mapping(OwnMap, Protocol):
     """The scans and their poses."""
     stands: float
     """Radius of the base, m: the floor below it is free."""
+    sightings: Sightings
+    """What the camera was turned to on the map, and the tops that it showed."""
 
     @property
     def known(self) -> float:

@@ -22,7 +22,7 @@ from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
 
 with lazily():
-    from momantu_skills.mapping import fitting, occupancy
+    from momantu_skills.mapping import fitting, occupancy, sightings
     from momantu_skills.mapping import survey as surveys
     from momantu_skills.mapping.logs import log
     from momantu_skills.navigation.control import footprint
@@ -90,6 +90,7 @@ class MappingService(Service):
         self._due_at = -math.inf
         self._rest_scans = RESET_SCANS
         self._told = False
+        self.sightings: sightings.Sightings = sightings.Sightings()
 
     def _empty(self) -> occupancy.Occupancy:
         longest = self.survey.mapper.config.matching.longest

@@ -172,3 +172,30 @@ def test_a_run_is_told_so_from_its_start_to_its_end(office: Path) -> None:
     momantu_bt.run(tree, world=ExampleWorld(), map=office, names=office, watch=lambda run: [Site()])
     assert {site.map_file for site in seen} == {office / "map.yaml"}
     assert seen[-1].known_places() == ("sofa", "shelf")
+
+
+class Surveyed(ExampleWorld):
+    """A world in which somebody can measure where the robot stands at first."""
+
+    start = Pose2D(1.0, 2.0, 0.5)
+
+
+@pytest.mark.parametrize("world", [Surveyed, ExampleWorld])
+@pytest.mark.parametrize("measured", [True, False])
+def test_a_measured_start_is_told_exactly_where_a_world_knows_it(
+    world: type[ExampleWorld], measured: bool
+) -> None:
+    told = []
+
+    class Start:
+        def ticked(self, run: object) -> None:
+            told.append(run.context.body.site)  # type: ignore[attr-defined]
+
+        def close(self) -> None:
+            pass
+
+    tree = "momantu_bt: 1\ntrees: {Main: [{wait: 0.1 s}, {check: localized}]}\n"
+    momantu_bt.run(tree, world=world(), measured_start=measured, watch=lambda run: [Start()])
+    exact = measured and world is Surveyed
+    assert told[0].start == (Surveyed.start if exact else ExampleWorld().site.start)
+    assert (told[0].start_sigma == (0.0, 0.0)) == exact

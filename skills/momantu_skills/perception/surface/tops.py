@@ -6,7 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from momantu_bt.geometry import Array, Pose2D, wrap_angle
+import numpy as np
+
+from momantu_bt.detector import View
+from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
 from momantu_bt.world import Surface
 from momantu_skills.perception.geometry.grids import Grid, closed, largest_component, opened
 from momantu_skills.perception.geometry.rectangles import smallest_rectangle
@@ -22,6 +25,8 @@ LEAST = 0.10
 """Least visible area of a top, m2."""
 FILLED = 0.55
 """Least share of its rectangle that is seen of a whole top; what stands on it hides the rest."""
+UPRIGHT_CELL, UPRIGHT = 0.05, 0.10
+"""Edge of a part of the floor, and the height above it that only uprights have there, m."""
 ALIKE = 0.09
 """Largest difference between a measured and a told edge of one top, m."""
 
@@ -57,6 +62,29 @@ def tops_among(points: Array, low: float, high: float) -> list[Top]:
             found.append(top)
         points = points[~plane.inliers]
     return sorted(found, key=lambda top: -top.area)
+
+
+def tops_in(views: Sequence[View], map_from_odom: Transform, low: float, high: float) -> list[Top]:
+    """The level patches between two heights (m) that views show in a room, in the map."""
+    points = np.concatenate([view.points for view in views])
+    return tops_among(map_from_odom.apply(without_uprights(points)), low, high)
+
+
+def without_uprights(points: Array) -> Array:
+    """Points (n, 3) without those on walls, sides and legs: where little floor has much height.
+
+    A level top covers each part of the floor at one height. Of a room full of walls only tops are
+    left to be found then.
+    """
+    if not len(points):
+        return points
+    grid = Grid.over(points[:, :2], UPRIGHT_CELL)
+    cells = grid.cells(points[:, :2])
+    size = grid.shape[0] * grid.shape[1]
+    low, high = np.full(size, np.inf), np.full(size, -np.inf)
+    np.minimum.at(low, cells, points[:, 2])
+    np.maximum.at(high, cells, points[:, 2])
+    return np.asarray(points[(high - low)[cells] < UPRIGHT])
 
 
 def _top(flat: Array, height: float) -> Top | None:
