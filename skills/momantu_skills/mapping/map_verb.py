@@ -24,8 +24,15 @@ STEP = 0.05
 """Share of the scans after which a line of progress is printed."""
 
 
+map_ = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
+
+
+@map_.callback()
 def make_map(
-    out: Annotated[Path, typer.Option("-o", "--out", help="A new folder for the map.")],
+    context: typer.Context,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="A new folder for the map.")
+    ] = None,
     log: Annotated[
         Path | None, typer.Option("--log", help="A log of CARMEN, a bag of ROS, or a record.")
     ] = None,
@@ -41,7 +48,7 @@ def make_map(
         str | None, typer.Option(help="The laser's topic, in a bag or record with several.")
     ] = None,
 ) -> ExitCode:
-    """Make a floor plan: of a recorded log, or of a world that a robot explores.
+    """Make a floor plan of a recorded log or of a world to explore; show and compare maps.
 
     The folder gets map.yaml and map.pgm, as map_server reads them, map.png to look at,
     trajectory.tum with the pose of each scan, site.yaml with names, and report.json: all or none.
@@ -58,9 +65,20 @@ def make_map(
       momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
       momantu-bt map --log runs/3 -o maps/flat
       momantu-bt map --world my_rooms.yaml --seed 3 -o maps/rooms
+      momantu-bt map show maps/rooms
+      momantu-bt map compare maps/rooms maps/rooms_today -o difference.png
     """
+    if context.invoked_subcommand is not None:
+        if any(given is not None for given in (out, log, world)):
+            raise InputError(
+                f"options of `map {context.invoked_subcommand}` stand behind its name; before it "
+                "stand those that make a map"
+            )
+        return ExitCode.SUCCESS
     if (log is None) == (world is None):
         raise InputError("give either --log with a log, or --world with a world to explore")
+    if out is None:
+        raise InputError("give -o with a new folder for the map")
     results.check_folder(out)
     if world is not None:
         return _explore(world, robot, seed, out)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import itertools
 import json
 import math
@@ -12,25 +11,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from momantu_bt.formats.files import OutputError, write_whole
+from momantu_bt.formats.map_folder import MAP, NAMES
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
+from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from PIL import Image, ImageDraw
+    from momantu_skills.mapping.pictures import floor_plan
 
-MAP, PICTURE, TRAJECTORY, REPORT = "map.yaml", "map.png", "trajectory.tum", "report.json"
-NAMES = "site.yaml"
+PICTURE, TRAJECTORY, REPORT = "map.png", "trajectory.tum", "report.json"
 FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES}
-_WAY = (200, 60, 40)
-_START, _END = (40, 140, 60), (40, 80, 200)
-_LEAST_EDGE = 800
-"""Pixels of the picture's longer side; small maps are drawn larger."""
 
 
 def check_folder(folder: Path, *, replace: bool = False) -> None:
@@ -71,7 +64,7 @@ def write_folder(
     try:
         draft.mkdir(parents=True)
         write_whole(draft / TRAJECTORY, _trajectory(stamps, poses))
-        write_whole(draft / PICTURE, _picture(plan, poses))
+        write_whole(draft / PICTURE, floor_plan.floor_plan_png(GridMap.of(plan), poses, names))
         write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
         write_whole(draft / NAMES, names.text())
         write_map(draft / MAP, plan)
@@ -131,27 +124,3 @@ def _trajectory(stamps: Sequence[float], poses: Sequence[Pose2D]) -> str:
             f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} 0 0 0 {math.sin(half):.9f} {math.cos(half):.9f}"
         )
     return "\n".join(lines) + "\n"
-
-
-def _picture(plan: MapPicture, poses: Sequence[Pose2D]) -> bytes:
-    """A PNG of the floor plan with the way driven, green at its start and blue at its end."""
-    levels: NDArray[np.uint8] = plan.levels.astype(np.uint8)
-    scale = max(1, round(_LEAST_EDGE / max(levels.shape)))
-    image = Image.fromarray(levels).convert("RGB")
-    image = image.resize((image.width * scale, image.height * scale), Image.Resampling.NEAREST)
-    draw = ImageDraw.Draw(image)
-    per_metre = scale / plan.resolution
-    places = [
-        (
-            (pose.x - plan.origin[0]) * per_metre,
-            image.height - (pose.y - plan.origin[1]) * per_metre,
-        )
-        for pose in poses
-    ]
-    draw.line(places, fill=_WAY, width=max(1, scale // 2))
-    for (x, y), colour in ((places[0], _START), (places[-1], _END)):
-        r = 2.0 * scale
-        draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
-    stream = io.BytesIO()
-    image.save(stream, "PNG")
-    return stream.getvalue()

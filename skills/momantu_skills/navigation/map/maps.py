@@ -27,6 +27,11 @@ class GridMap:
     resolution: float
     origin: tuple[float, float]
 
+    @classmethod
+    def of(cls, picture: maps.MapPicture) -> GridMap:
+        """The floor plan that a map's files hold."""
+        return cls(frozen(picture.cells()), picture.resolution, picture.origin)
+
     @property
     def size(self) -> tuple[float, float]:
         """Extent (x, y) in m."""
@@ -64,8 +69,7 @@ def read_grid(path: Path) -> GridMap:
 
 @lru_cache(maxsize=8)
 def _read_grid(path: Path) -> GridMap:
-    picture = maps.read_map(path)
-    return GridMap(frozen(picture.cells()), picture.resolution, picture.origin)
+    return GridMap.of(maps.read_map(path))
 
 
 def overlaid(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:
