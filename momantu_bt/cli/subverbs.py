@@ -98,9 +98,7 @@ def _first_line(entry: EntryPoint) -> str:
     return (doc or "").partition("\n")[0]
 
 
-def _calls_back(
-    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef, app: str
-) -> bool:
+def _calls_back(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef, app: str) -> bool:
     """Whether a function is decorated with `@app.callback()`: it is what the group itself does."""
     calls = [each.func for each in node.decorator_list if isinstance(each, ast.Call)]
     return any(ast.unparse(each) == f"{app}.callback" for each in calls)

@@ -17,13 +17,15 @@ from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
+from momantu_skills.mapping.mapper import Graph
 from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
     from momantu_skills.mapping.pictures import floor_plan
 
 PICTURE, TRAJECTORY, REPORT = "map.png", "trajectory.tum", "report.json"
-FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES}
+SURVEY = "survey.npz"
+FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES, SURVEY}
 
 
 def check_folder(folder: Path, *, replace: bool = False) -> None:
@@ -50,11 +52,13 @@ def write_folder(
     stamps: Sequence[float],
     poses: Sequence[Pose2D],
     report: dict[str, Any],
+    survey: bytes,
     names: Names | None = None,
 ) -> None:
     """Write a map, whole or not at all; a map that was there is replaced then.
 
-    names: what the robot was taught; by default nothing but where the map begins.
+    survey: what it was made of, as `stored.packed` has it. names: what the robot was taught; by
+    default nothing but where the map begins.
 
     Raises:
         OutputError: the folder cannot be written.
@@ -67,6 +71,7 @@ def write_folder(
         write_whole(draft / PICTURE, floor_plan.floor_plan_png(GridMap.of(plan), poses, names))
         write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
         write_whole(draft / NAMES, names.text())
+        write_whole(draft / SURVEY, survey)
         write_map(draft / MAP, plan)
         _take_place(draft, folder)
     except OutputError:
@@ -100,14 +105,16 @@ def read_report(folder: Path) -> dict[str, Any] | None:
         return None
 
 
-def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str, Any]:
+def report_of(plan: MapPicture, graph: Graph) -> dict[str, Any]:
     """What is known of a map, as plain data: m and square metres."""
     cells, area = plan.cells(), plan.resolution**2
-    way = sum(a.distance_to(b) for a, b in itertools.pairwise(poses))
+    steps = zip(itertools.pairwise(graph.poses), graph.motions, strict=True)
+    way = sum(a.distance_to(b) for (a, b), motion in steps if motion is not None)
     return {
-        "scans": len(poses),
+        "scans": len(graph.poses),
+        "sessions": 1 + graph.motions.count(None),
         "way_m": round(way, 3),
-        "loops": loops,
+        "loops": len(graph.loops),
         "resolution_m": plan.resolution,
         "size_m": [round(edge * plan.resolution, 3) for edge in cells.shape[::-1]],
         "free_m2": round(float((cells == FREE).sum() * area), 2),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -38,11 +37,6 @@ class SavedMap:
         cell = self.grid.resolution**2
         kinds = (("free", FREE), ("occupied", OCCUPIED), ("unknown", UNKNOWN))
         return {kind: float((self.grid.cells == value).sum() * cell) for kind, value in kinds}
-
-    @property
-    def way_length(self) -> float:
-        """The length of the way, m."""
-        return sum(a.distance_to(b) for a, b in itertools.pairwise(self.way))
 
 
 def read_saved(path: Path) -> SavedMap:

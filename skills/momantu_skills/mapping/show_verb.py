@@ -84,8 +84,9 @@ def figures(found: SavedMap) -> dict[str, Any]:
         "resolution_m": found.grid.resolution,
         "origin": list(found.grid.origin),
         **{f"{kind}_m2": round(area, 2) for kind, area in found.areas.items()},
-        "way_m": round(found.way_length, 3) if found.way else None,
+        "way_m": found.report.get("way_m"),
         "scans": found.report.get("scans"),
+        "sessions": found.report.get("sessions"),
         "loops": found.report.get("loops"),
         "names": names,
     }
@@ -110,10 +111,14 @@ def _lines(found: SavedMap, places: dict[str, Pose2D]) -> list[str]:
         f"  {areas['free']:.1f} square metres free, {areas['occupied']:.1f} occupied, "
         f"{areas['unknown']:.1f} unknown",
     ]
-    if found.way:
-        loops = found.report.get("loops")
-        closed = "" if loops is None else f", {loops} loops"
-        lines.append(f"  way ({terminal.WAY}) of {found.way_length:.0f} m{closed}")
+    report = found.report
+    if "way_m" in report:
+        sessions = report.get("sessions", 1)
+        parts = "" if sessions == 1 else f" in {sessions} sessions"
+        lines.append(
+            f"  way ({terminal.WAY}) of {report['way_m']:.0f} m{parts}, {report['scans']} scans, "
+            f"{report['loops']} loops"
+        )
     marks = dict(zip(places, terminal.MARKS, strict=False))
     surfaces = {} if found.names is None else found.names.surfaces
     for name, pose in places.items():

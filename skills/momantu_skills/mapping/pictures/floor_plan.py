@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -21,6 +22,8 @@ COLORS = np.array([(254, 254, 254), (0, 0, 0), (205, 205, 205)], dtype=np.uint8)
 WAY = (200, 60, 40)
 START, END = (40, 140, 60), (40, 80, 200)
 NAMED = (150, 60, 150)
+JUMP = 3.0
+"""Distance between two scans above which no way is drawn between them, m: a session began."""
 _KEY = {"occupied": (0, 0, 0), "free": (254, 254, 254), "unknown": (205, 205, 205)}
 
 
@@ -36,12 +39,23 @@ def floor_plan_png(grid: GridMap, way: Sequence[Pose2D] = (), names: Names | Non
         key += [(NAMED, "names")]
     drawn = sheet.Sheet(colors, part.size, part.origin, key)
     if way:
-        drawn.line(np.array([(pose.x, pose.y) for pose in way]), WAY)
+        for part in _unbroken(way):
+            drawn.line(np.array([(pose.x, pose.y) for pose in part]), WAY)
         drawn.dot(way[0].x, way[0].y, START)
         drawn.dot(way[-1].x, way[-1].y, END)
     if names is not None:
         _draw_names(drawn, names)
     return drawn.png()
+
+
+def _unbroken(way: Sequence[Pose2D]) -> list[list[Pose2D]]:
+    """The parts of a way between jumps."""
+    parts = [[way[0]]]
+    for before, pose in itertools.pairwise(way):
+        if before.distance_to(pose) > JUMP:
+            parts.append([])
+        parts[-1].append(pose)
+    return parts
 
 
 def _draw_names(drawn: sheet.Sheet, names: Names) -> None:

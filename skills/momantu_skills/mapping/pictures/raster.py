@@ -19,20 +19,25 @@ WALL_SHARE = 0.5
 the edge, and single cells do not fill a small picture."""
 
 
+def known_window(known: NDArray[np.bool_], resolution: float) -> tuple[slice, slice]:
+    """The rows and columns of a raster that hold what is known, with a margin; else all."""
+    parts = []
+    for axis in (1, 0):
+        there = np.flatnonzero(known.any(axis=axis))
+        if not len(there):
+            return slice(0, known.shape[0]), slice(0, known.shape[1])
+        margin = math.ceil(MARGIN / resolution)
+        end = min(known.shape[1 - axis], int(there[-1]) + 1 + margin)
+        parts.append(slice(max(0, int(there[0]) - margin), end))
+    return parts[0], parts[1]
+
+
 def known_part(grid: GridMap) -> GridMap:
     """The part of a map that is known, with a margin; all of it if nothing is."""
-    rows, columns = (np.flatnonzero((grid.cells != UNKNOWN).any(axis=axis)) for axis in (1, 0))
-    if not len(rows):
-        return grid
-    margin = math.ceil(MARGIN / grid.resolution)
-    low = [max(0, int(each[0]) - margin) for each in (rows, columns)]
-    high = [int(each[-1]) + 1 + margin for each in (rows, columns)]
-    origin = tuple(
-        corner + first * grid.resolution
-        for corner, first in zip(grid.origin, low[::-1], strict=True)
-    )
-    cells = frozen(grid.cells[low[0] : high[0], low[1] : high[1]].copy())
-    return replace(grid, cells=cells, origin=(origin[0], origin[1]))
+    rows, columns = known_window(grid.cells != UNKNOWN, grid.resolution)
+    x, y = grid.origin
+    origin = x + columns.start * grid.resolution, y + rows.start * grid.resolution
+    return replace(grid, cells=frozen(grid.cells[rows, columns].copy()), origin=origin)
 
 
 def resampled(cells: NDArray[np.uint8], rows: int, columns: int) -> NDArray[np.uint8]:

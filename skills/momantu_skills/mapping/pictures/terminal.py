@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -90,7 +91,7 @@ class _Canvas:
             if number:
                 text.append("\n")
             starts = [0, *(np.flatnonzero(line[1:] != line[:-1]) + 1), len(line)]
-            for first, last in zip(starts, starts[1:], strict=False):
+            for first, last in itertools.pairwise(starts):
                 sign = str(line[first])
                 style = _MARK if sign in MARKS else _STYLE.get(sign, "")
                 text.append(sign * int(last - first), style)

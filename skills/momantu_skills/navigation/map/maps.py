@@ -38,6 +38,11 @@ class GridMap:
         rows, columns = self.cells.shape
         return columns * self.resolution, rows * self.resolution
 
+    @property
+    def free_area(self) -> float:
+        """Square metres of free cells."""
+        return float((self.cells == maps.FREE).sum() * self.resolution**2)
+
     def index(self, x: float, y: float) -> tuple[int, int]:
         """(row, column) of the cell at map coordinates; may lie outside the grid."""
         return (
