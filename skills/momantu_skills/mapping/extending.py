@@ -30,6 +30,9 @@ NEAR = np.array([1.5, 0.6])
 """How far from where it is told that it starts a robot is looked for, m and rad."""
 FITS = 0.7
 """Least share of a scan's hits within 10 cm of the map's walls at a place that is believed."""
+AGREES = 0.85
+"""Least share of walls that agree before a log is added: two maps by lasers agree in nearly all,
+and a wrong place would spoil the map."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +113,7 @@ def joined(
     longest = MatchingConfig().longest
     counts = Occupancy(earlier.grid.resolution, longest, earlier.grid.resolution)
     counts.add(survey.placed())
-    found = align(Side(earlier.grid), Side(counts.grid()))
+    found = align(Side(earlier.grid), Side(counts.grid()), AGREES)
     if found is None:
         raise InputError(
             f"the log shows no place of {earlier.folder} that could be found again, so nothing can "

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from momantu_bt.formats.maps import FREE
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.mapping.comparing.agreement import SAME, judged
 from momantu_skills.mapping.comparing.side import Side
@@ -39,7 +40,8 @@ LEAST_AGREED = 1.5
 LEAST_SHARE = 0.7
 """Least share of surfaces that agree, of those that lie where the other map knows something."""
 LEAST_PART = 0.2
-"""Least share of the smaller map's surfaces that agree."""
+"""Least share of the smaller map's surfaces that agree, and of its free floor that is free on both:
+a room on the other side of a wall agrees with the wall, too."""
 RIVAL = 0.9
 """Share of the best pose's merit from which on another one is a rival."""
 APART = (0.5, 0.2)
@@ -59,23 +61,30 @@ class Aligned:
     rivals: tuple[Pose2D, ...]
 
 
-def align(a: Side, b: Side) -> Aligned | None:
-    """Lay the second map on the first; None if they do not show the same place."""
+def align(a: Side, b: Side, least_share: float = LEAST_SHARE) -> Aligned | None:
+    """Lay the second map on the first; None if they do not show the same place.
+
+    least_share: of each map's surfaces that agree, of those where the other knows something.
+    """
     if not len(a.points) or not len(b.points):
         return None
     if _length(b) > _length(a):
-        found = _align_smaller(b, a)
+        found = _align_smaller(b, a, least_share)
         if found is None:
             return None
         rivals = tuple(pose.inverse() for pose in found.rivals)
         return Aligned(found.a_from_b.inverse(), found.merit, rivals)
-    return _align_smaller(a, b)
+    return _align_smaller(a, b, least_share)
 
 
-def _align_smaller(large: Side, small: Side) -> Aligned | None:
+def _align_smaller(large: Side, small: Side, least_share: float) -> Aligned | None:
     """The same for a second map that has no more walls than the first."""
     refined = [refine(large, small, start) for start in _starts(large, small)]
-    good = [(_merit(large, small, pose), pose) for pose in refined if _shared(large, small, pose)]
+    good = [
+        (_merit(large, small, pose), pose)
+        for pose in refined
+        if _shared(large, small, pose, least_share)
+    ]
     good.sort(key=lambda each: -each[0])
     different: list[tuple[float, Pose2D]] = []
     for merit, pose in good:
@@ -202,16 +211,19 @@ def _merit(a: Side, b: Side, a_from_b: Pose2D) -> float:
     )
 
 
-def _shared(large: Side, small: Side, pose: Pose2D) -> bool:
+def _shared(large: Side, small: Side, pose: Pose2D, least_share: float) -> bool:
     """Whether enough agrees for the maps to be of one place."""
     for side, other, there in ((small, large, pose), (large, small, pose.inverse())):
         told = judged(side, other, there)
         same, missing = np.count_nonzero(told.same), np.count_nonzero(told.missing)
-        if same * side.grid.resolution < LEAST_AGREED or same < LEAST_SHARE * (same + missing):
+        if same * side.grid.resolution < LEAST_AGREED or same < least_share * (same + missing):
             return False
         if side is small and same < LEAST_PART * len(side.points):
             return False
-    return True
+    free = _thinned(small.grid.centers(small.grid.cells == FREE), MOST_REFINED)
+    return (
+        bool(np.mean(large.cells_at(pose.apply(free)) == FREE) > LEAST_PART) if len(free) else True
+    )
 
 
 def _apart(first: Pose2D, second: Pose2D) -> bool:
