@@ -54,7 +54,11 @@ def with_subverbs(verb: Any, name: str, given: Sequence[str]) -> Any:
 def add_command(app: typer.Typer, name: str, command: Any) -> None:
     """Add a command, a function or a typer app, under a name."""
     if isinstance(command, typer.Typer):
-        app.add_typer(command, name=name)
+        own = command.registered_callback
+        if own is None or own.callback is None or isinstance(own.help, str):
+            app.add_typer(command, name=name)
+        else:
+            app.add_typer(command, name=name, help=help_of(own.callback))
     else:
         app.command(name, help=help_of(command))(command)
 
@@ -86,10 +90,18 @@ def _first_line(entry: EntryPoint) -> str:
         return ""
     kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     named = [
-        n for n in (tree.body if tree else []) if isinstance(n, kinds) and n.name == entry.attr
+        n
+        for n in (tree.body if tree else [])
+        if isinstance(n, kinds) and (n.name == entry.attr or _calls_back(n, entry.attr))
     ]
     doc = ast.get_docstring(named[-1]) if named else None
     return (doc or "").partition("\n")[0]
+
+
+def _calls_back(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef, app: str) -> bool:
+    """Whether a function is decorated with `@app.callback()`: it is what the group itself does."""
+    calls = [each.func for each in node.decorator_list if isinstance(each, ast.Call)]
+    return any(ast.unparse(each) == f"{app}.callback" for each in calls)
 
 
 def _source(module: str) -> Path | None:

@@ -7,9 +7,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from momantu_bt.engine.executor import Executor, Observer
 from momantu_bt.engine.person import Scripted
+from momantu_bt.errors import InputError
 from momantu_bt.faults.spec import parse_fault
 from momantu_bt.record.report import Report
+from momantu_bt.record.view import ViewObserver
 from momantu_bt.running.launch import Watch, launch
 from momantu_bt.running.options import RunOptions
 from momantu_bt.running.prepare import prepare
@@ -42,6 +45,7 @@ def run(
     faults: Iterable[str] = (),
     patience: float = math.inf,
     record: Path | None = None,
+    view_port: int | None = None,
 ) -> Report:
     """Run a tree: a file, a bundled tree by name, a text, or a mapping.
 
@@ -55,6 +59,7 @@ def run(
     answers for `ask` and `confirm`, in order; after the last one, nobody answers. faults: texts
     such as `camera.dead@12 s`. patience: limit of wall time for a skill's step, s. There is none by
     default, as a hang in native code beyond the limit ends the process, which here is yours.
+    view_port: where a browser sees the run until it ends; by default nowhere.
 
     Raises:
         InputError: the tree is none of these, or the mapping holds what a YAML file cannot.
@@ -85,7 +90,20 @@ def run(
         record=record,
         person=Scripted(answers),
     )
-    result = launch(prepare(tree_source(tree), options, registry), watch)
+    shown = watch if view_port is None else _viewed(watch, view_port)
+    result = launch(prepare(tree_source(tree), options, registry), shown)
     if report is not None:
         result.write(report)
     return result
+
+
+def _viewed(watch: Watch | None, port: int) -> Watch:
+    """The same observers, and one that keeps a view in a browser up to date."""
+
+    def both(run: Executor) -> list[Observer]:
+        if run.world is None:
+            raise InputError("a view needs a world; this run has none")
+        observers = [] if watch is None else list(watch(run))
+        return [*observers, ViewObserver(run.world.open_view(port), run)]
+
+    return both

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from momantu_bt.errors import InputError
+from momantu_bt.formats.map_folder import MAP, NAMES, OVERHANG, map_file
 from momantu_bt.formats.maps import FREE, picture_file, read_map
-from momantu_bt.formats.names import valid_names
 from momantu_bt.geometry import Pose2D
 from momantu_bt.robot import RobotDescription
 from momantu_bt.site_file import Names, read_names
@@ -20,12 +20,6 @@ from momantu_bt.world import MappedWorld, Site, World, WorldEntry
 
 NO_MAP = "none"
 """`--map none`: the robot is told no floor plan, and drives by odometry and what it sees."""
-MAP, OVERHANG, NAMES = "map.yaml", "overhang.yaml", "site.yaml"
-"""The files of a map's folder that a run reads."""
-_PICTURES = (".pgm", ".png", ".bmp")
-_WHAT = (
-    "a map is a folder that `momantu-bt map` wrote, with its map.yaml, or a map_server YAML file"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +80,7 @@ def read_told(map: str | None, names: str | None) -> Told | None:
         return Told(None, names=read)
     if map == NO_MAP:
         return Told(None, names=read, charted=False)
-    file = _map_file(Path(map)).absolute()
+    file = map_file(Path(map), f"--map {map}").absolute()
     plan = read_map(file)
     cells = plan.cells()
     if not (cells == FREE).any():
@@ -112,32 +106,6 @@ def told_files(map_: str | None, names: str | None) -> dict[str, Path]:
         if file is not None:
             found |= {what: file, f"{what}'s picture": picture_file(file)}
     return found
-
-
-def _map_file(path: Path) -> Path:
-    if path.is_file():
-        if path.suffix.lower() in _PICTURES:
-            beside = path.with_suffix(".yaml")
-            there = f"; did you mean {beside}?" if beside.is_file() else f"; {_WHAT}"
-            raise InputError(f"--map {path} is the map's picture{there}")
-        return path
-    if path.is_dir():
-        if (path / MAP).is_file():
-            return path / MAP
-        others = sorted(each.name for each in path.glob("*.yaml"))
-        hint = f"it has {', '.join(others)}: name the file itself" if others else _WHAT
-        raise InputError(f"--map {path}: the folder has no {MAP}; {hint}")
-    raise InputError(f"--map {path}: there is no such folder or file; {_near(path)}{_WHAT}")
-
-
-def _near(path: Path) -> str:
-    """Which neighbour of a path may be meant, as the start of a sentence's rest."""
-    there = path.parent
-    if not there.is_dir():
-        return f"{there} is not there either; "
-    maps = [each.name for each in there.iterdir() if (each / MAP).is_file()]
-    hint = valid_names(path.name, maps, "maps there") if maps else ""
-    return f"{hint}; " if hint else ""
 
 
 def _names_file(path: Path) -> Path:

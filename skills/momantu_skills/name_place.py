@@ -31,7 +31,8 @@ class NamePlace(Skill):
     """Give a name to the place where the base stands, or to a surface from `detect_plane`.
 
     From then on it is a name like those of the site, for the rest of the run; `save_map` writes it
-    into site.yaml. A name that is known already is given anew. A surface is taken as a rectangle,
+    into site.yaml. On a map that is still being made it moves with the scans about it when a loop
+    is closed. A name that is known already is given anew. A surface is taken as a rectangle,
     approached from all four sides, the one before the robot first; what was not seen of it is not
     part of it.
     """

@@ -192,9 +192,15 @@ class Navigate(Skill):
     def _destination(self, vehicle: Vehicle, working: Working) -> trip.Destination:
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
-        if self.in_front_of is not None and self.in_front_of in surfaces:
-            stands = before_surface(surfaces[self.in_front_of], working, vehicle.pose())
-            return trip.Destination(lambda: stands, tolerance, side=self.side)
+        named = str(self.in_front_of)
+        if named in surfaces:
+            base = vehicle.pose()
+            return trip.Destination(
+                lambda: before_surface(surfaces[named], working, base),
+                tolerance,
+                side=self.side,
+                thing=lambda: surfaces[named].map_from_surface,
+            )
         target = self.within_reach_of
         if target is not None:
             point = self._point
@@ -203,7 +209,7 @@ class Navigate(Skill):
                 return within_reach(point(target), surfaces.values(), vehicle.pose(), working)
 
             return trip.Destination(reachable, tolerance, side=self.side, in_odom=True)
-        pose = self.goal if self.goal is not None else self.site.places[str(self.in_front_of)]
+        pose = self.goal if self.goal is not None else self.site.places[named]
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw))) or not (
             vehicle.costmap.grid.contains(pose.x, pose.y)
         ):
@@ -214,5 +220,10 @@ class Navigate(Skill):
                 "BAD_GOAL",
                 f"({pose.x}, {pose.y}) is not {where} spans x {x:.1f} to {x + width:.1f} and "
                 f"y {y:.1f} to {y + height:.1f} m",
+            )
+        if self.goal is None:
+            places = self.site.places
+            return trip.Destination(
+                lambda: [Stand(places[named], 0, 0.0)], tolerance, thing=lambda: places[named]
             )
         return trip.Destination(lambda: [Stand(pose, 0, 0.0)], tolerance)

@@ -14,7 +14,6 @@ from momantu_skills.mapping.own import Mapping
 
 with lazily():
     from momantu_bt.formats.files import OutputError
-    from momantu_bt.site_file import Names
     from momantu_skills.mapping import building, results
 
 BUDGET = 0.5
@@ -63,11 +62,12 @@ class SaveMap(Skill):
             raise Failure(
                 "NOTHING_MAPPED", f"the map has {len(survey.used)} scans, {FEWEST} needed"
             )
+        self.mapping.anchors.note(survey.mapper.poses)
         work = partial(building.built_of, survey, self.resolution, stands=self.mapping.stands)
         built: building.Built = yield from compute(work, BUDGET)
-        names = Names.of(built.poses[0], self.site.places, self.site.surfaces)
+        names = self.mapping.anchors.names(built.survey.mapper.poses)
         try:
-            results.write_folder(folder, built.plan, built.stamps, built.poses, built.report, names)
+            building.write(folder, built, names)
         except OutputError as error:
             raise Failure("MAP_NOT_WRITTEN", str(error)) from None
         self.known = float(built.report["free_m2"])

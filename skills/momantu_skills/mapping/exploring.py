@@ -9,10 +9,10 @@ from typing import Any
 
 import momantu_bt
 from momantu_bt.geometry import Pose2D
-from momantu_bt.site_file import Names
 from momantu_bt.world import World
 from momantu_skills.mapping import building, results
 from momantu_skills.mapping.building import FEWEST
+from momantu_skills.mapping.extending import Earlier, named
 from momantu_skills.mapping.own import Mapping
 
 TREE = "examples/map_a_building"
@@ -27,12 +27,14 @@ class Explored:
     """What came of a run. status: as reports have it; why: the failure, "" if there is none.
 
     about: the report of the saved map; None if there was nothing to save. seconds: simulated time.
+    begun: `map_from_base` of the first scan on the earlier map, if there is one.
     """
 
     status: str
     why: str
     about: dict[str, Any] | None
     seconds: float
+    begun: Pose2D | None = None
 
 
 def explore(
@@ -41,23 +43,30 @@ def explore(
     seed: int,
     folder: Path,
     told: Callable[[float, Mapping], None],
+    earlier: Earlier | None = None,
+    view: int | None = None,
 ) -> Explored:
     """Run the tree, and save what there is if it does not do so itself.
 
     Who makes a map puts the robot down and measures where: the map lies in the frame of the site,
     so that the site's names hold on it too.
 
-    told: hears the clock, s, and the service after each tick.
+    folder: is made, or holds the earlier map, which is replaced then. told: hears the clock, s, and
+    the service after each tick. earlier: a map to go on with. view: the port of a view in a
+    browser.
 
     Raises:
         OutputError: the folder cannot be written.
         MomantuError: the run cannot begin; see `momantu_bt.run`.
     """
     follower = _Follower(told)
+    replaces = earlier is not None and folder.resolve() == earlier.folder.resolve()
 
     def watch(run: Any) -> Sequence[Any]:
         follower.mapping = run.services.running["mapping"]
-        follower.site = run.context.body.site
+        if earlier is not None:
+            follower.mapping.earlier = earlier
+            named(run.context.body.site, earlier)
         return [follower]
 
     report = momantu_bt.run(
@@ -66,24 +75,29 @@ def explore(
         robot=robot,
         measured_start=True,
         seed=seed,
-        values={"folder": str(folder)},
+        values={"folder": str(folder), "replace": replaces, "go_on": earlier is not None},
         max_time=LONGEST,
         referee=False,
         watch=watch,
+        view_port=view,
     )
+    mapping = follower.mapping
     why = "" if report.failure is None else f"{report.failure.code}: {report.failure.message}"
-    about = results.read_report(folder)
-    if about is None and len(follower.mapping.survey.used) >= FEWEST:
-        about = _save(follower, folder)
-    return Explored(report.status, why or (report.error or ""), about, report.sim_time_s)
+    why = mapping.unplaced or why or report.error or ""
+    about = None
+    if report.status == "SUCCESS":
+        about = results.read_report(folder)
+    elif len(mapping.survey.used) >= FEWEST:
+        about = _save(mapping, folder)
+    begun = None if earlier is None else mapping.begun
+    return Explored(report.status, why, about, report.sim_time_s, begun)
 
 
-def _save(follower: _Follower, folder: Path) -> dict[str, Any]:
-    mapping, site = follower.mapping, follower.site
+def _save(mapping: Mapping, folder: Path) -> dict[str, Any]:
+    mapping.anchors.note(mapping.survey.mapper.poses)
     built = building.built_of(mapping.survey, RESOLUTION, interrupted=True, stands=mapping.stands)
-    start: Pose2D = built.poses[0]
-    names = Names.of(start, site.places, site.surfaces)
-    results.write_folder(folder, built.plan, built.stamps, built.poses, built.report, names)
+    names = mapping.anchors.names(built.survey.mapper.poses)
+    building.write(folder, built, names)
     return built.report
 
 
@@ -93,7 +107,6 @@ class _Follower:
     def __init__(self, told: Callable[[float, Mapping], None]) -> None:
         self._told = told
         self.mapping: Mapping
-        self.site: Any
 
     def ticked(self, run: Any) -> None:
         """Tell of the tick."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,20 +11,31 @@ from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.lazy import lazily
 
 with lazily():
-    from momantu_skills.mapping import building, exploring, results
+    from momantu_skills.mapping import building, exploring, extending, progress, results
+    from momantu_skills.mapping import survey as surveys
     from momantu_skills.mapping.logs import reading
 
 if TYPE_CHECKING:
-    from momantu_skills.mapping.own import Mapping
+    from collections.abc import Sequence
 
-EVERY = 5.0
-"""Simulated time after which a line of progress is printed, s."""
-STEP = 0.05
-"""Share of the scans after which a line of progress is printed."""
+    from momantu_bt.geometry import Pose2D
+    from momantu_skills.mapping.extending import Earlier
+    from momantu_skills.mapping.logs.log import LoggedScan
+
+RESOLUTION = 0.05
+"""The usual cell of a log's map, m."""
+VIEW_PORT = 8080
 
 
+map_ = typer.Typer(rich_markup_mode=None, invoke_without_command=True)
+
+
+@map_.callback()
 def make_map(
-    out: Annotated[Path, typer.Option("-o", "--out", help="A new folder for the map.")],
+    context: typer.Context,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="A new folder for the map.")
+    ] = None,
     log: Annotated[
         Path | None, typer.Option("--log", help="A log of CARMEN, a bag of ROS, or a record.")
     ] = None,
@@ -35,19 +45,34 @@ def make_map(
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="The seed of the world.")] = 0,
     resolution: Annotated[
-        float, typer.Option(min=0.01, max=0.5, help="Edge of the map's cells, m; of a log.")
-    ] = 0.05,
+        float | None,
+        typer.Option(
+            min=0.01,
+            max=0.5,
+            help="Edge of the cells of a log's map, m. Default: 0.05, or as the map of --extend.",
+        ),
+    ] = None,
     scan: Annotated[
         str | None, typer.Option(help="The laser's topic, in a bag or record with several.")
     ] = None,
+    extend: Annotated[
+        Path | None, typer.Option("--extend", metavar="DIR", help="Go on with the map of DIR.")
+    ] = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="Serve the scene to a browser; with --world.")
+    ] = False,
+    view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
 ) -> ExitCode:
-    """Make a floor plan: of a recorded log, or of a world that a robot explores.
+    """Make a floor plan of a recorded log or of a world to explore; show and compare maps.
 
     The folder gets map.yaml and map.pgm, as map_server reads them, map.png to look at,
-    trajectory.tum with the pose of each scan, site.yaml with names, and report.json: all or none.
-    The same log, or the same world, robot and seed, gives the same map. A robot that explores runs
-    the tree examples/map_a_building and knows nothing of the world. Ctrl-C ends the work: the map
-    of what was seen until then is saved.
+    trajectory.tum with the pose of each scan, site.yaml with names, report.json, and survey.npz
+    with what the map was made of: all or none. The same log, or the same world, robot and seed,
+    gives the same map. A robot that explores runs the tree examples/map_a_building and knows
+    nothing of the world. Ctrl-C ends the work: the map of what was seen until then is saved.
+
+    --extend goes on with a map: the robot finds itself on it near where its site says that it
+    starts; a log is laid on it wherever it begins. DIR stays as it is, unless -o names it.
 
     Exit code 0: the map is written; 1: the exploration failed, with the map so far; 2: the log or
     the arguments are wrong, and nothing is written; 130: interrupted, with the map so far.
@@ -58,17 +83,35 @@ def make_map(
       momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
       momantu-bt map --log runs/3 -o maps/flat
       momantu-bt map --world my_rooms.yaml --seed 3 -o maps/rooms
+      momantu-bt map --world my_rooms.yaml --seed 4 --extend maps/rooms -o maps/more --view
+      momantu-bt map --log today.log --extend maps/office -o maps/office
+      momantu-bt map show maps/rooms
+      momantu-bt map compare maps/rooms maps/rooms_today -o difference.png
     """
+    if context.invoked_subcommand is not None:
+        if any(given is not None for given in (out, log, world)):
+            raise InputError(
+                f"options of `map {context.invoked_subcommand}` stand behind its name; before it "
+                "stand those that make a map"
+            )
+        return ExitCode.SUCCESS
     if (log is None) == (world is None):
         raise InputError("give either --log with a log, or --world with a world to explore")
-    results.check_folder(out)
+    if out is None:
+        raise InputError("give -o with a new folder for the map")
+    if view and world is None:
+        raise InputError("--view shows a world that a robot explores: give --world")
+    results.check_folder(out, replace=extend is not None and out.resolve() == extend.resolve())
+    earlier = None if extend is None else extending.read_earlier(extend)
     if world is not None:
-        return _explore(world, robot, seed, out)
+        return _explore(world, robot, seed, out, earlier, view_port if view else None)
     assert log is not None
-    return _of_log(log, scan, out, resolution)
+    return _of_log(log, scan, out, resolution, earlier)
 
 
-def _of_log(log: Path, scan: str | None, out: Path, resolution: float) -> ExitCode:
+def _of_log(
+    log: Path, scan: str | None, out: Path, resolution: float | None, earlier: Earlier | None
+) -> ExitCode:
     recorded = reading.read_log(log, scan)
     for note in recorded.notes:
         typer.echo(f"note: {log}: {note}", err=True)
@@ -77,63 +120,60 @@ def _of_log(log: Path, scan: str | None, out: Path, resolution: float) -> ExitCo
             f"{log} holds {len(recorded.scans)} scans that can be used; a map needs "
             f"{building.FEWEST} at least"
         )
-    with _Progress(len(recorded.scans)) as progress:
-        built = building.build(recorded.scans, resolution, progress)
-    results.write_folder(out, built.plan, built.stamps, built.poses, built.report)
+    survey, names = surveys.Survey(), None
+    if earlier is not None:
+        begun = _joined(log, recorded.scans, earlier)
+        if begun is None:
+            typer.echo("interrupted before the log was laid on the map: nothing is written")
+            return ExitCode.INTERRUPTED
+        survey = surveys.Survey.going_on(earlier.known, begun)
+    cell = resolution or (RESOLUTION if earlier is None else earlier.grid.resolution)
+    with progress.Scans(len(recorded.scans), survey) as told:
+        built = building.build(recorded.scans, cell, told, survey)
+    if earlier is not None:
+        names = extending.names_on(earlier, built.survey.mapper.poses)
+    building.write(out, built, names)
     typer.echo(_summary(built.report, out))
     return ExitCode.INTERRUPTED if built.interrupted else ExitCode.SUCCESS
 
 
-def _explore(world: str, robot: str | None, seed: int, out: Path) -> ExitCode:
-    explored = exploring.explore(world, robot, seed, out, _Clock())
+def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D | None:
+    """Where the log begins on an earlier map; None if that was interrupted."""
+    alone = surveys.Survey()
+    with progress.Scans(len(scans), alone, "the log alone: ") as told:
+        found = extending.joined(earlier, alone, scans, told)
+    if found is None:
+        return None
+    at = found.start
+    typer.echo(
+        f"the log begins at ({at.x:.2f}, {at.y:.2f}), yaw {at.yaw:.2f} rad, on the map "
+        f"{earlier.folder}"
+    )
+    if found.ways > 1:
+        typer.echo(
+            f"note: it can be laid on that map in {found.ways} ways that are nearly as good; look "
+            "whether the new map is right",
+            err=True,
+        )
+    return at
+
+
+def _explore(
+    world: str, robot: str | None, seed: int, out: Path, earlier: Earlier | None, view: int | None
+) -> ExitCode:
+    with progress.Exploration() as told:
+        explored = exploring.explore(world, robot, seed, out, told, earlier, view)
     if explored.about is None:
         raise InputError(f"nothing was mapped: {explored.why or explored.status}")
     if explored.why:
         typer.echo(f"the exploration ended early: {explored.why}", err=True)
+    if explored.begun is not None:
+        x, y, yaw = explored.begun.x, explored.begun.y, explored.begun.yaw
+        typer.echo(f"it began at ({x:.2f}, {y:.2f}), yaw {yaw:.2f} rad, on the earlier map")
     typer.echo(f"{explored.seconds:.1f} s simulated; {_summary(explored.about, out)}")
     if explored.status == "INTERRUPTED":
         return ExitCode.INTERRUPTED
     return ExitCode.SUCCESS if explored.status == "SUCCESS" else ExitCode.FAILURE
-
-
-class _Clock:
-    """A line on standard error every few seconds of the world's clock."""
-
-    def __init__(self) -> None:
-        self._next = 0.0
-
-    def __call__(self, now: float, mapping: Mapping) -> None:
-        """Say what is known by now."""
-        if now >= self._next:
-            self._next = now + EVERY
-            known = f"{mapping.known:.1f} square metres known, {mapping.loops} loops"
-            typer.echo(f"{now:7.1f} s  {known}", err=True)
-
-
-class _Progress:
-    """A line on standard error now and then; Ctrl-C ends the work between two scans."""
-
-    def __init__(self, scans: int) -> None:
-        self._scans, self._next = scans, STEP
-        self._stopped = False
-
-    def __enter__(self) -> Self:
-        self._before = signal.signal(signal.SIGINT, self._stop)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        signal.signal(signal.SIGINT, self._before)
-
-    def _stop(self, *_: object) -> None:
-        self._stopped = True
-        typer.echo("interrupted: saving the map so far", err=True)
-
-    def __call__(self, done: int, loops: int) -> bool:
-        """Say how far it is; True if the work is to end."""
-        if done >= self._next * self._scans:
-            typer.echo(f"{done} of {self._scans} scans, {loops} loops", err=True)
-            self._next += STEP
-        return self._stopped
 
 
 def _summary(about: dict[str, Any], out: Path) -> str:

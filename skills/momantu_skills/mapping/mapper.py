@@ -31,6 +31,8 @@ LAST_ROUNDS = 3
 NEIGHBOUR, ALONE = 1.5, 4.0
 """How far submaps may be off at the end, m: with a loop, and without one."""
 LAST_CANDIDATES = 4
+PLACED = np.diag([0.05**2, 0.05**2, 0.01**2])
+"""Covariance (m, m, rad) of the first scan of a further session, where it was found on the map."""
 
 
 @dataclass(slots=True, eq=False)
@@ -41,6 +43,25 @@ class _Open:
     growing: Growing
     way: float = 0.0
     scans: dict[int, Pose2D] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Graph:
+    """All that a mapper knows once its submaps are finished: enough to go on from.
+
+    poses: `map_from_base` of the scans; motions: by odometry between them, None where a session
+    begins. origins: `map_from_submap`; ways: driven when they began, m. tried: pairs of submaps
+    that were compared. finished: those that show something.
+    """
+
+    poses: list[Pose2D]
+    motions: list[Pose2D | None]
+    matches: list[Match]
+    origins: list[Pose2D]
+    ways: list[float]
+    loops: list[Loop]
+    tried: set[tuple[int, int]]
+    finished: dict[int, Submap]
 
 
 class Mapper:
@@ -55,8 +76,8 @@ class Mapper:
         """How often the poses of earlier scans were changed."""
         self._start = start
         self.loops: list[Loop] = []
-        self._odometry: list[Pose2D] = []
-        self._motions: list[Pose2D] = []
+        self._odometry = ORIGIN
+        self._motions: list[Pose2D | None] = []
         self._matches: list[Match] = []
         self._origins: list[Pose2D] = []
         self._ways: list[float] = []
@@ -67,20 +88,68 @@ class Mapper:
         self._waiting = 0
         """Loops that the graph has not been optimised with."""
 
+    @classmethod
+    def going_on(cls, graph: Graph, start: Pose2D) -> Mapper:
+        """A mapper that knows a graph, of which it makes a copy.
+
+        start: `map_from_base` of the next scan, which begins a session of its own odometry.
+        """
+        mapper = cls(None, start)
+        mapper.poses, mapper._motions = graph.poses[:], graph.motions[:]
+        mapper._matches, mapper.loops = graph.matches[:], graph.loops[:]
+        mapper._origins, mapper._ways = graph.origins[:], graph.ways[:]
+        mapper._finished, mapper._tried = dict(graph.finished), set(graph.tried)
+        mapper._optimised = len(graph.poses)
+        return mapper
+
+    def graph(self) -> Graph:
+        """What is known; all submaps are finished."""
+        assert not self._open
+        return Graph(
+            self.poses,
+            self._motions,
+            self._matches,
+            self._origins,
+            self._ways,
+            self.loops,
+            self._tried,
+            self._finished,
+        )
+
     def add(self, odom_from_base: Pose2D, rays: Rays) -> Tracked:
         """Enter the next scan. The mapper's newest pose is then in `poses`."""
         scan = ScanPoints.from_rays(rays, self.config.matching.longest)
-        if not self.poses:
+        if not self._open:
             tracked = Tracked(Pose2D(0.0, 0.0), NEW, 1.0)
-            self.poses.append(self._start)
-            self._begin(scan)
+            self._begin_session(scan)
         else:
-            motion = self._odometry[-1].inverse() @ odom_from_base
+            motion = self._odometry.inverse() @ odom_from_base
             tracked = self._track(motion, scan)
             self._motions.append(motion)
-        self._odometry.append(odom_from_base)
+        self._odometry = odom_from_base
         self._turn_over(scan, broken=tracked.score < self.config.broken_score)
         return tracked
+
+    def _begin_session(self, scan: ScanPoints) -> None:
+        """Enter the first scan, or the first of a session that goes on with a map."""
+        known = self._nearest_submap()
+        if self.poses:
+            self._motions.append(None)
+        self.poses.append(self._start)
+        self._begin(scan)
+        if known is not None:
+            there = self._origins[known].inverse() @ self._start
+            scan_number = len(self.poses) - 1
+            self._matches.append(Match(known, scan_number, there, PLACED, entered=False))
+
+    def _nearest_submap(self) -> int | None:
+        """The finished submap whose middle is nearest to the start."""
+
+        def far(number: int) -> float:
+            middle = self._origins[number].apply(self._finished[number].middle[None])[0]
+            return math.hypot(middle[0] - self._start.x, middle[1] - self._start.y)
+
+        return min(self._finished, key=far, default=None)
 
     def _track(self, motion: Pose2D, scan: ScanPoints) -> Tracked:
         number = len(self.poses)
@@ -93,18 +162,20 @@ class Mapper:
             own = tracked.pose
             if each is not first:
                 own = self._origins[each.number].inverse() @ pose
-            if tracked.score >= self.config.broken_score:
+            entered = tracked.score >= self.config.broken_score
+            if entered:
                 each.growing.add(own, scan)
             each.scans[number] = own
             each.way += way
-            self._matches.append(Match(each.number, number, own, tracked.covariance))
+            self._matches.append(Match(each.number, number, own, tracked.covariance, entered))
         return tracked
 
     def _begin(self, scan: ScanPoints) -> None:
         """Begin a submap at the newest scan."""
         number, at = len(self._origins), len(self.poses) - 1
         self._origins.append(self.poses[-1])
-        self._ways.append(self._ways[-1] + self._open[-1].way if self._open else 0.0)
+        driven = self._open[-1].way if self._open else 0.0
+        self._ways.append(driven + (self._ways[-1] if self._ways else 0.0))
         opened = _Open(number, Growing(self.config.matching))
         opened.growing.add(Pose2D(0.0, 0.0), scan)
         opened.scans[at] = Pose2D(0.0, 0.0)

@@ -30,26 +30,30 @@ SLACK = 3.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """`submap_from_base` of a scan, with its covariance (3, 3) in base."""
+    """`submap_from_base` of a scan, with its covariance (3, 3) in base.
+
+    entered: the scan is a part of the submap.
+    """
 
     submap: int
     scan: int
     pose: Pose2D
     covariance: Array
+    entered: bool = True
 
 
 def optimise(
     scans: Sequence[Pose2D],
     submaps: Sequence[Pose2D],
-    motions: Sequence[Pose2D],
+    motions: Sequence[Pose2D | None],
     matches: Sequence[Match],
     loops: Sequence[Loop],
     config: MatchingConfig,
 ) -> tuple[list[Pose2D], list[Pose2D]]:
     """`map_from_base` of all scans and `map_from_submap` of all submaps, from first estimates.
 
-    motions: by odometry from each scan to the next. Matches are weighted by Huber's function, loops
-    and odometry by Cauchy's: a wrong one loses its influence.
+    motions: by odometry from each scan to the next, None where a session begins. Matches are
+    weighted by Huber's function, loops and odometry by Cauchy's: a wrong one loses its influence.
     """
     values = gtsam.Values()
     for i, pose in enumerate(scans):
@@ -71,7 +75,10 @@ def optimise(
 
 
 def _rigid(
-    first: Pose2D, motions: Sequence[Pose2D], matches: Sequence[Match], config: MatchingConfig
+    first: Pose2D,
+    motions: Sequence[Pose2D | None],
+    matches: Sequence[Match],
+    config: MatchingConfig,
 ) -> Any:
     """What is known without loops."""
     graph = gtsam.NonlinearFactorGraph()
@@ -82,6 +89,8 @@ def _rigid(
         keys = _submap(match.submap), _scan(match.scan)
         graph.add(gtsam.BetweenFactorPose2(*keys, _of(match.pose), noise))
     for i, motion in enumerate(motions):
+        if motion is None:
+            continue
         far, turn = odometry_deviation(motion, config) * SLACK
         noise = _robust(_cauchy(1.0), _independent(np.array([far, far, turn])))
         graph.add(gtsam.BetweenFactorPose2(_scan(i), _scan(i + 1), _of(motion), noise))

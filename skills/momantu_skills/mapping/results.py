@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import itertools
 import json
 import math
@@ -12,25 +11,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from momantu_bt.formats.files import OutputError, write_whole
+from momantu_bt.formats.map_folder import MAP, NAMES
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
+from momantu_skills.mapping.mapper import Graph
+from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from PIL import Image, ImageDraw
+    from momantu_skills.mapping.pictures import floor_plan
 
-MAP, PICTURE, TRAJECTORY, REPORT = "map.yaml", "map.png", "trajectory.tum", "report.json"
-NAMES = "site.yaml"
-FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES}
-_WAY = (200, 60, 40)
-_START, _END = (40, 140, 60), (40, 80, 200)
-_LEAST_EDGE = 800
-"""Pixels of the picture's longer side; small maps are drawn larger."""
+PICTURE, TRAJECTORY, REPORT = "map.png", "trajectory.tum", "report.json"
+SURVEY = "survey.npz"
+FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES, SURVEY}
 
 
 def check_folder(folder: Path, *, replace: bool = False) -> None:
@@ -57,11 +52,13 @@ def write_folder(
     stamps: Sequence[float],
     poses: Sequence[Pose2D],
     report: dict[str, Any],
+    survey: bytes,
     names: Names | None = None,
 ) -> None:
     """Write a map, whole or not at all; a map that was there is replaced then.
 
-    names: what the robot was taught; by default nothing but where the map begins.
+    survey: what it was made of, as `stored.packed` has it. names: what the robot was taught; by
+    default nothing but where the map begins.
 
     Raises:
         OutputError: the folder cannot be written.
@@ -71,9 +68,10 @@ def write_folder(
     try:
         draft.mkdir(parents=True)
         write_whole(draft / TRAJECTORY, _trajectory(stamps, poses))
-        write_whole(draft / PICTURE, _picture(plan, poses))
+        write_whole(draft / PICTURE, floor_plan.floor_plan_png(GridMap.of(plan), poses, names))
         write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
         write_whole(draft / NAMES, names.text())
+        write_whole(draft / SURVEY, survey)
         write_map(draft / MAP, plan)
         _take_place(draft, folder)
     except OutputError:
@@ -107,14 +105,16 @@ def read_report(folder: Path) -> dict[str, Any] | None:
         return None
 
 
-def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str, Any]:
+def report_of(plan: MapPicture, graph: Graph) -> dict[str, Any]:
     """What is known of a map, as plain data: m and square metres."""
     cells, area = plan.cells(), plan.resolution**2
-    way = sum(a.distance_to(b) for a, b in itertools.pairwise(poses))
+    steps = zip(itertools.pairwise(graph.poses), graph.motions, strict=True)
+    way = sum(a.distance_to(b) for (a, b), motion in steps if motion is not None)
     return {
-        "scans": len(poses),
+        "scans": len(graph.poses),
+        "sessions": 1 + graph.motions.count(None),
         "way_m": round(way, 3),
-        "loops": loops,
+        "loops": len(graph.loops),
         "resolution_m": plan.resolution,
         "size_m": [round(edge * plan.resolution, 3) for edge in cells.shape[::-1]],
         "free_m2": round(float((cells == FREE).sum() * area), 2),
@@ -131,27 +131,3 @@ def _trajectory(stamps: Sequence[float], poses: Sequence[Pose2D]) -> str:
             f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} 0 0 0 {math.sin(half):.9f} {math.cos(half):.9f}"
         )
     return "\n".join(lines) + "\n"
-
-
-def _picture(plan: MapPicture, poses: Sequence[Pose2D]) -> bytes:
-    """A PNG of the floor plan with the way driven, green at its start and blue at its end."""
-    levels: NDArray[np.uint8] = plan.levels.astype(np.uint8)
-    scale = max(1, round(_LEAST_EDGE / max(levels.shape)))
-    image = Image.fromarray(levels).convert("RGB")
-    image = image.resize((image.width * scale, image.height * scale), Image.Resampling.NEAREST)
-    draw = ImageDraw.Draw(image)
-    per_metre = scale / plan.resolution
-    places = [
-        (
-            (pose.x - plan.origin[0]) * per_metre,
-            image.height - (pose.y - plan.origin[1]) * per_metre,
-        )
-        for pose in poses
-    ]
-    draw.line(places, fill=_WAY, width=max(1, scale // 2))
-    for (x, y), colour in ((places[0], _START), (places[-1], _END)):
-        r = 2.0 * scale
-        draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
-    stream = io.BytesIO()
-    image.save(stream, "PNG")
-    return stream.getvalue()

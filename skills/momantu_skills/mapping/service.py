@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import SENSOR_DEAD, Failure
-from momantu_bt.formats.maps import FREE
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
@@ -22,11 +21,14 @@ from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
 
 with lazily():
-    from momantu_skills.mapping import fitting, occupancy, sightings
+    from momantu_skills.mapping import anchors, extending, fitting, growing_plan, sightings
     from momantu_skills.mapping import survey as surveys
     from momantu_skills.mapping.logs import log
     from momantu_skills.navigation.control import footprint
     from momantu_skills.navigation.map import costmap as costmaps
+
+if TYPE_CHECKING:
+    from momantu_skills.mapping.extending import Earlier
 
 RESOLUTION = 0.05
 """Cell of the map, m."""
@@ -64,6 +66,12 @@ class MappingService(Service):
         "known": float,
         "loops": int,
     }
+    earlier: Earlier | None = None
+    """The map with which a run goes on; set before it starts. The first scan says where it is."""
+    unplaced: str = ""
+    """Why the run does not go on with it: the first scan does not fit."""
+    begun: Pose2D | None = None
+    """`map_from_base` of the first scan on it."""
     senses = ("laser",)
     replaces = ("localization",)
     charts = True
@@ -77,27 +85,27 @@ class MappingService(Service):
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
         self.stands: float = footprint.half_width(np.array(context.description.footprint))
+        self._start = context.site.start
         self.survey: surveys.Survey = surveys.Survey(context.site.start)
-        self._counts: occupancy.Occupancy = self._empty()
+        self.anchors: anchors.Anchors = anchors.Anchors(context.site)
+        if self.earlier is not None:
+            self.anchors.hold_all(self.earlier.known.graph.poses)
+        self._plan = growing_plan.GrowingPlan(RESOLUTION, STEP, self.stands)
         self._costmap: costmaps.Costmap | None = None
         self._odom_from_base: Pose2D | None = None
         self._odometry = ORIGIN
         self._estimate = context.site.start
         self._covariance = np.zeros((3, 3))
         self._score = self._fit = 1.0
-        self._counted = self._revision = 0
-        self._newest: tuple[int, Pose2D] = (0, ORIGIN)
+        self._newest: tuple[int, Pose2D] | None = None
         self._due_at = -math.inf
         self._rest_scans = RESET_SCANS
         self._told = False
         self.sightings: sightings.Sightings = sightings.Sightings()
 
-    def _empty(self) -> occupancy.Occupancy:
-        longest = self.survey.mapper.config.matching.longest
-        return occupancy.Occupancy(RESOLUTION, longest, STEP)
-
     def update(self, robot: Robot, now: float) -> None:
         """Follow odometry; use a scan when the base has moved, and compare some at rest."""
+        self.anchors.note(self.survey.mapper.poses)
         odom_from_base = Pose2D.from_transform(robot.state().odom_from_base)
         before = self._odom_from_base or odom_from_base
         self._odom_from_base = odom_from_base
@@ -132,7 +140,17 @@ class MappingService(Service):
         rays = Rays.from_scan(scan, self._frames.lookup(self._base, scan.frame, scan.stamp))
         there = self._frames.lookup(ODOM, self._base, scan.stamp)
         odometry = self._odometry @ Pose2D.from_transform(there)
+        if self.earlier is not None and not self.survey.used:
+            try:
+                self.begun = extending.begun_at(self.earlier, self._start, rays)
+            except Failure as failure:
+                self.unplaced = failure.value.message
+                raise
+            self.survey = surveys.Survey.going_on(self.earlier.known, self.begun)
+        revision = self.survey.mapper.revision
         tracked = self.survey.add(log.LoggedScan(scan.stamp, odometry, rays))
+        if self.survey.mapper.revision != revision:
+            self.anchors.move(self.survey.mapper.poses)
         if tracked is not None:
             self._score, self._covariance = tracked.score, tracked.covariance
         if self._costmap is not None:
@@ -141,19 +159,14 @@ class MappingService(Service):
 
     def refresh(self) -> None:
         """Bring the costmap up to date with the newest scan."""
-        mapper = self.survey.mapper
-        if self._counted == len(mapper.poses):
+        if not self._plan.follow(self.survey):
             return
-        moved = ORIGIN
-        if mapper.revision != self._revision:
-            self._revision, self._counted = mapper.revision, 0
-            self._counts.forget()
+        poses, moved = self.survey.mapper.poses, ORIGIN
+        if self._newest is not None:
             last, pose = self._newest
-            moved = mapper.poses[last] @ pose.inverse()
-        self._counts.add(self.survey.placed(self._counted), self.stands)
-        self._counted = len(mapper.poses)
-        self._newest = self._counted - 1, mapper.poses[-1]
-        grid = self._counts.grid()
+            moved = ORIGIN if poses[last] == pose else poses[last] @ pose.inverse()
+        self._newest = len(poses) - 1, poses[-1]
+        grid = self._plan.grid()
         self._surfaces = fitting.surfaces(grid)
         if self._costmap is None:
             self._costmap = costmaps.Costmap(grid, None, self._config, grows=True)
@@ -221,4 +234,4 @@ class MappingService(Service):
         """Square metres of free floor that the map has."""
         if self._costmap is None:
             return 0.0
-        return float((self._costmap.grid.cells == FREE).sum() * RESOLUTION**2)
+        return self._costmap.grid.free_area

@@ -8,7 +8,7 @@ import signal
 
 import numpy as np
 import pytest
-from momantu_skills.mapping import map_verb
+from momantu_skills.mapping import progress as shown
 from momantu_skills.mapping.logs import carmen
 from PIL import Image
 
@@ -51,6 +51,7 @@ def test_the_folder_holds_a_map_that_opens_again(log, tmp_path, capsys):
         "trajectory.tum",
         "report.json",
         "site.yaml",
+        "survey.npz",
     }
     assert (read_map(out / "map.yaml").cells() == OCCUPIED).sum() > 100
     report = json.loads((out / "report.json").read_text())
@@ -83,14 +84,14 @@ def test_a_bad_log_writes_nothing(tmp_path, capsys):
 
 
 def test_ctrl_c_saves_what_there_is(log, tmp_path, capsys, monkeypatch):
-    progress = map_verb._Progress.__call__
+    progress = shown.Scans.__call__
 
     def interrupted(self, done, loops):
         if done == 10:
             os.kill(os.getpid(), signal.SIGINT)
         return progress(self, done, loops)
 
-    monkeypatch.setattr(map_verb._Progress, "__call__", interrupted)
+    monkeypatch.setattr(shown.Scans, "__call__", interrupted)
     out = tmp_path / "map"
     assert main(["map", "--log", str(log), "-o", str(out)]) == ExitCode.INTERRUPTED
     assert json.loads((out / "report.json").read_text())["scans_read"] == 10

@@ -38,8 +38,9 @@ WALK = 3.0
 class Destination:
     """Candidate stands (map), computed at each request, and the goal tolerance.
 
-    in_odom: keep the chosen stand fixed in odom, for goals measured from the current place. chosen:
-    the stand of the newest attempt, map; None before the first.
+    in_odom: keep the chosen stand fixed in odom, for goals measured from the current place. thing:
+    where what the stands belong to lies in the map now, which may move while the map is made.
+    chosen: the stand of the newest attempt, map; None before the first.
     """
 
     def __init__(
@@ -49,9 +50,10 @@ class Destination:
         *,
         side: int = 0,
         in_odom: bool = False,
+        thing: Callable[[], Pose2D] | None = None,
     ) -> None:
         self.stands, self.tolerance = stands, tolerance
-        self.side, self.in_odom = side, in_odom
+        self.side, self.in_odom, self.thing = side, in_odom, thing
         self.chosen: Pose2D | None = None
 
 
@@ -150,7 +152,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
     route: Route = yield from compute(
         lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
     )
-    to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
+    to.chosen, goal = route.stand, _kept(vehicle, route.stand, to)
     if within(vehicle.pose(), goal(), distance, angle):
         return
     for _ in range(3):
@@ -163,7 +165,7 @@ def _go(vehicle: Vehicle, mppi: Mppi, to: Destination) -> Trip:
         route = yield from compute(
             lambda: choose(vehicle, to.stands(), to.side), vehicle.config.planning_time
         )
-        to.chosen, goal = route.stand, _kept(vehicle, route.stand, to.in_odom)
+        to.chosen, goal = route.stand, _kept(vehicle, route.stand, to)
     raise Failure("NO_PROGRESS", "three approaches did not end at the goal")
 
 
@@ -177,7 +179,7 @@ def _straight_back(vehicle: Vehicle, to: Destination) -> Trip | Any:
     behind = None if first is None else straight_behind(vehicle, first.pose, distance)
     if first is None or behind is None or not (yield from back_off(vehicle, behind)):
         return False
-    to.chosen, goal = first.pose, _kept(vehicle, first.pose, to.in_odom)
+    to.chosen, goal = first.pose, _kept(vehicle, first.pose, to)
     return (yield from arrive(vehicle, goal, distance, angle))
 
 
@@ -196,11 +198,21 @@ def _line_up(vehicle: Vehicle, goal: Pose2D, distance: float) -> Trip:
     yield from prepare(vehicle, goal, distance)
 
 
-def _kept(vehicle: Vehicle, stand: Pose2D, in_odom: bool) -> Callable[[], Pose2D]:
-    if not in_odom or vehicle.pose().distance_to(stand) > WALK:
+def _kept(vehicle: Vehicle, stand: Pose2D, to: Destination) -> Callable[[], Pose2D]:
+    """Where a chosen stand is, asked again and again."""
+    if to.thing is not None:
+        return _beside(to.thing, stand)
+    if not to.in_odom or vehicle.pose().distance_to(stand) > WALK:
         return lambda: stand
     odom_from_stand = vehicle.map_from_odom().inverse() @ stand
     return lambda: vehicle.map_from_odom() @ odom_from_stand
+
+
+def _beside(thing: Callable[[], Pose2D], stand: Pose2D) -> Callable[[], Pose2D]:
+    """A stand that moves with a thing of the map."""
+    then = thing()
+    thing_from_stand = then.inverse() @ stand
+    return lambda: stand if thing() == then else thing() @ thing_from_stand
 
 
 def _recover(vehicle: Vehicle, attempt: int) -> Trip:

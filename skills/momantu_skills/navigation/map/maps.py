@@ -27,11 +27,21 @@ class GridMap:
     resolution: float
     origin: tuple[float, float]
 
+    @classmethod
+    def of(cls, picture: maps.MapPicture) -> GridMap:
+        """The floor plan that a map's files hold."""
+        return cls(frozen(picture.cells()), picture.resolution, picture.origin)
+
     @property
     def size(self) -> tuple[float, float]:
         """Extent (x, y) in m."""
         rows, columns = self.cells.shape
         return columns * self.resolution, rows * self.resolution
+
+    @property
+    def free_area(self) -> float:
+        """Square metres of free cells."""
+        return float((self.cells == maps.FREE).sum() * self.resolution**2)
 
     def index(self, x: float, y: float) -> tuple[int, int]:
         """(row, column) of the cell at map coordinates; may lie outside the grid."""
@@ -64,8 +74,7 @@ def read_grid(path: Path) -> GridMap:
 
 @lru_cache(maxsize=8)
 def _read_grid(path: Path) -> GridMap:
-    picture = maps.read_map(path)
-    return GridMap(frozen(picture.cells()), picture.resolution, picture.origin)
+    return GridMap.of(maps.read_map(path))
 
 
 def overlaid(layer: GridMap, grid: GridMap) -> NDArray[np.bool_]:

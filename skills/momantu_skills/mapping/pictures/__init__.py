@@ -1,0 +1,1 @@
+"""Maps as pictures: files to look at, and text for a terminal."""
