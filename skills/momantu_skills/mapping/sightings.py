@@ -51,9 +51,9 @@ class Sightings:
     def nearest(
         self, base: Pose2D, known: Iterable[Surface], fits: Callable[[tops.Top], bool]
     ) -> tops.Top | None:
-        """Take out the top nearest to the base that fits and has no name yet; None: none left."""
-        named = [as_top(surface) for surface in known]
-        self.seen = [top for top in self.seen if not any(same(top, other) for other in named)]
+        """Take out the top nearest to the base that fits and is new; None: none is left."""
+        old = [*self.refused, *(as_top(surface) for surface in known)]
+        self.seen = [top for top in self.seen if not any(same(top, other) for other in old)]
         best = min(
             filter(fits, self.seen), key=lambda top: base.distance_to(top.pose), default=None
         )
