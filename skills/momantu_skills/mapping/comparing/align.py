@@ -248,4 +248,4 @@ def _thinned(points: Array, most: int) -> Array:
     """At most so many of points (n, 2), evenly spread over their order."""
     if len(points) <= most:
         return points
-    return points[np.linspace(0, len(points) - 1, most).round().astype(int)]
+    return np.asarray(points[np.linspace(0, len(points) - 1, most).round().astype(int)])
