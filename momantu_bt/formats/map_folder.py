@@ -43,6 +43,6 @@ def _near(path: Path) -> str:
     there = path.parent
     if not there.is_dir():
         return f"{there} is not there either; "
-    maps = [each.name for each in there.iterdir() if (each / MAP).is_file()]
+    maps = sorted(each.name for each in there.iterdir() if (each / MAP).is_file())
     hint = valid_names(path.name, maps, "maps there") if maps else ""
     return f"{hint}; " if hint else ""

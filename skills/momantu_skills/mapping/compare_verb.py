@@ -102,6 +102,11 @@ class Compared:
         """All that a person is told."""
         areas = self.laid.areas
         lines = [self.transform()]
+        if self._found.share < align.SURE_SHARE:
+            lines.append(
+                f"only {100 * self._found.share:.0f} % agree of the walls that lie where the other "
+                "map knows something: look whether it is the same place"
+            )
         for pose in self._found.rivals:
             lines.append(
                 f"B also fits turned otherwise, nearly as well: x {pose.x:.2f} m, y {pose.y:.2f} "
@@ -141,6 +146,7 @@ class Compared:
         }
         return {
             "a_from_b": _pose(at),
+            "agree_where_both_know": round(self._found.share, 4),
             "rivals": [_pose(pose) for pose in self._found.rivals],
             **{name: round(area, 3) for name, area in self.laid.areas.items()},
             **shares,

@@ -16,7 +16,7 @@ from momantu_bt.site_file import Names, read_names
 from momantu_bt.world import Places, Site, Surfaces
 from momantu_skills.mapping import building, results, stored
 from momantu_skills.mapping.anchors import Anchors
-from momantu_skills.mapping.comparing.align import align, placed
+from momantu_skills.mapping.comparing.align import SURE_SHARE, align, placed
 from momantu_skills.mapping.comparing.side import Side
 from momantu_skills.mapping.logs.log import LoggedScan
 from momantu_skills.mapping.occupancy import Occupancy
@@ -26,13 +26,10 @@ from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.config import MatchingConfig
 
-NEAR = np.array([1.5, 0.6])
+NEAR = np.array([1.5, 1.0])
 """How far from where it is told that it starts a robot is looked for, m and rad."""
 FITS = 0.7
 """Least share of a scan's hits within 10 cm of the map's walls at a place that is believed."""
-AGREES = 0.85
-"""Least share of walls that agree before a log is added: two maps by lasers agree in nearly all,
-and a wrong place would spoil the map."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +110,7 @@ def joined(
     longest = MatchingConfig().longest
     counts = Occupancy(earlier.grid.resolution, longest, earlier.grid.resolution)
     counts.add(survey.placed())
-    found = align(Side(earlier.grid), Side(counts.grid()), AGREES)
+    found = align(Side(earlier.grid), Side(counts.grid()), SURE_SHARE)
     if found is None:
         raise InputError(
             f"the log shows no place of {earlier.folder} that could be found again, so nothing can "

@@ -161,6 +161,8 @@ def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D 
 def _explore(
     world: str, robot: str | None, seed: int, out: Path, earlier: Earlier | None, view: int | None
 ) -> ExitCode:
+    if view is not None:
+        typer.echo(f"view: http://127.0.0.1:{view}")
     with progress.Exploration() as told:
         explored = exploring.explore(world, robot, seed, out, told, earlier, view)
     if explored.about is None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from momantu_bt.errors import InputError
-from momantu_bt.formats.map_folder import map_file
+from momantu_bt.formats.map_folder import MAP, NAMES, map_file
 from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.site_file import Names, read_names
@@ -48,10 +48,10 @@ def read_saved(path: Path) -> SavedMap:
     """
     file = map_file(path, str(path))
     grid = read_grid(file)
-    beside = file.parent if file.name == results.MAP else None
+    beside = file.parent if file.name == MAP else None
     if beside is None:
         return SavedMap(file, grid, (), None, {})
-    names, way = beside / results.NAMES, beside / results.TRAJECTORY
+    names, way = beside / NAMES, beside / results.TRAJECTORY
     return SavedMap(
         file,
         grid,

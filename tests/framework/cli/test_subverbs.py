@@ -129,3 +129,41 @@ def test_what_can_be_no_sub_verb(bring: Bring, name: str, attribute: str, words:
     bring(name, GREET, attribute)
     with pytest.raises(PluginError, match=words):
         COMMANDS.load(name)
+
+
+WHOLE = '''
+"""Paints."""
+import typer
+
+paint = typer.Typer(invoke_without_command=True)
+
+
+@paint.callback()
+def make(context: typer.Context, blue: bool = typer.Option(False, "--blue")) -> int:
+    """Paint a wall.
+
+    Examples:
+      momantu-bt paint --blue
+      momantu-bt paint wash
+    """
+    if context.invoked_subcommand is None:
+        typer.echo("blue" if blue else "white")
+    return 1
+'''
+
+
+def test_a_verb_of_another_package_does_something_itself_and_takes_sub_verbs(
+    bring: Bring, capsys: Out
+) -> None:
+    bring("paint", WHOLE, "paint")
+    bring("paint greet", GREET)
+    assert main(["--help"]) == 0
+    assert "Paint a wall." in capsys.readouterr().out
+    assert main(["paint", "--blue"]) == 1
+    assert capsys.readouterr().out == "blue\n"
+    assert main(["paint", "greet", "Ada"]) == 1
+    assert capsys.readouterr().out == "hello Ada\n"
+    assert main(["paint", "--help"]) == 0
+    said = capsys.readouterr().out
+    assert "paint --blue\n" in said
+    assert "Say hello to somebody." in said

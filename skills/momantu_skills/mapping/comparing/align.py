@@ -37,8 +37,9 @@ MOST_REFINED = 2000
 """Most points of each map that are refined with."""
 LEAST_AGREED = 1.5
 """Least length of the walls that both maps have, m."""
-LEAST_SHARE = 0.7
-"""Least share of surfaces that agree, of those that lie where the other map knows something."""
+LEAST_SHARE, SURE_SHARE = 0.7, 0.85
+"""Least share of surfaces that agree, of those that lie where the other map knows something; and
+what two maps by lasers of a place that has hardly changed have."""
 LEAST_PART = 0.2
 """Least share of the smaller map's surfaces that agree, and of its free floor that is free on both:
 a room on the other side of a wall agrees with the wall, too."""
@@ -52,12 +53,14 @@ APART = (0.5, 0.2)
 class Aligned:
     """How the second map lies on the first.
 
-    merit: metres of wall that agree, less those that do not. rivals: other poses that explain the
-    maps nearly as well, best first.
+    merit: metres of wall that agree, less those that do not. share: of the surfaces that agree, see
+    LEAST_SHARE; the lesser one of both maps. rivals: other poses that explain the maps nearly as
+    well, best first.
     """
 
     a_from_b: Pose2D
     merit: float
+    share: float
     rivals: tuple[Pose2D, ...]
 
 
@@ -73,7 +76,7 @@ def align(a: Side, b: Side, least_share: float = LEAST_SHARE) -> Aligned | None:
         if found is None:
             return None
         rivals = tuple(pose.inverse() for pose in found.rivals)
-        return Aligned(found.a_from_b.inverse(), found.merit, rivals)
+        return Aligned(found.a_from_b.inverse(), found.merit, found.share, rivals)
     return _align_smaller(a, b, least_share)
 
 
@@ -94,7 +97,7 @@ def _align_smaller(large: Side, small: Side, least_share: float) -> Aligned | No
         return None
     merit, best = different[0]
     rivals = tuple(pose for value, pose in different[1:] if value > RIVAL * merit)
-    return Aligned(best, merit, rivals)
+    return Aligned(best, merit, _share(large, small, best), rivals)
 
 
 def refine(a: Side, b: Side, a_from_b: Pose2D) -> Pose2D:
@@ -211,19 +214,25 @@ def _merit(a: Side, b: Side, a_from_b: Pose2D) -> float:
     )
 
 
+def _share(a: Side, b: Side, a_from_b: Pose2D) -> float:
+    """The lesser share of both maps' surfaces that agree, of those that the other one knows."""
+    shares = []
+    for told in (judged(b, a, a_from_b), judged(a, b, a_from_b.inverse())):
+        same = int(told.same.sum())
+        shares.append(same / max(1, same + int(told.missing.sum())))
+    return min(shares)
+
+
 def _shared(large: Side, small: Side, pose: Pose2D, least_share: float) -> bool:
     """Whether enough agrees for the maps to be of one place."""
-    for side, other, there in ((small, large, pose), (large, small, pose.inverse())):
-        told = judged(side, other, there)
-        same, missing = np.count_nonzero(told.same), np.count_nonzero(told.missing)
-        if same * side.grid.resolution < LEAST_AGREED or same < least_share * (same + missing):
-            return False
-        if side is small and same < LEAST_PART * len(side.points):
-            return False
+    agreed = int(judged(small, large, pose).same.sum())
+    if agreed < LEAST_PART * len(small.points) or _share(large, small, pose) < least_share:
+        return False
+    if agreed * small.grid.resolution < LEAST_AGREED:
+        return False
     free = _thinned(small.grid.centers(small.grid.cells == FREE), MOST_REFINED)
-    return (
-        bool(np.mean(large.cells_at(pose.apply(free)) == FREE) > LEAST_PART) if len(free) else True
-    )
+    there = large.cells_at(pose.apply(free)) == FREE
+    return not len(free) or float(np.mean(there)) > LEAST_PART
 
 
 def _apart(first: Pose2D, second: Pose2D) -> bool:
@@ -239,4 +248,4 @@ def _thinned(points: Array, most: int) -> Array:
     """At most so many of points (n, 2), evenly spread over their order."""
     if len(points) <= most:
         return points
-    return points[np.linspace(0, len(points) - 1, most).round().astype(int)]
+    return np.asarray(points[np.linspace(0, len(points) - 1, most).round().astype(int)])

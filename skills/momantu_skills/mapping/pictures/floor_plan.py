@@ -38,13 +38,16 @@ def floor_plan_png(grid: GridMap, way: Sequence[Pose2D] = (), names: Names | Non
     if names is not None and (names.places or names.surfaces):
         key += [(NAMED, "names")]
     drawn = sheet.Sheet(colors, part.size, part.origin, key)
+    if names is not None:
+        _draw_names(drawn, names)
     if way:
-        for part in _unbroken(way):
-            drawn.line(np.array([(pose.x, pose.y) for pose in part]), WAY)
+        for drive in _unbroken(way):
+            drawn.line(np.array([(pose.x, pose.y) for pose in drive]), WAY)
         drawn.dot(way[0].x, way[0].y, START)
         drawn.dot(way[-1].x, way[-1].y, END)
     if names is not None:
-        _draw_names(drawn, names)
+        for pose in names.places.values():
+            drawn.arrow(Pose2D(*pose), NAMED)
     return drawn.png()
 
 
@@ -59,10 +62,9 @@ def _unbroken(way: Sequence[Pose2D]) -> list[list[Pose2D]]:
 
 
 def _draw_names(drawn: sheet.Sheet, names: Names) -> None:
+    """Surfaces and all words; the way and places lie over them."""
     for surface in names.surfaces.values():
         drawn.outline(_outline(surface), NAMED)
-    for pose in names.places.values():
-        drawn.arrow(Pose2D(*pose), NAMED)
     for name, (x, y, _) in names.places.items():
         drawn.word(name, x, y, NAMED)
     for name, surface in names.surfaces.items():

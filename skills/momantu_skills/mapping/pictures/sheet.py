@@ -59,7 +59,7 @@ class Sheet:
         (x, y) of its lower left corner, m. key: colours and what they mean. notes: lines of text.
         """
         rows, columns = colors.shape[:2]
-        self._scale = columns / extent[0], rows / extent[1]
+        self._scale: tuple[float, float] = (columns / extent[0], rows / extent[1])
         self._origin, self._rows = origin, rows
         width = max(columns, NARROWEST)
         self._left = (width - columns) // 2
