@@ -5,17 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import momantu_bt
 from momantu_bt.geometry import Pose2D
+from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
 from momantu_bt.world import World
 from momantu_skills.mapping import building, results
 from momantu_skills.mapping.building import FEWEST
 from momantu_skills.mapping.own import Mapping
 
+with lazily():
+    from momantu_skills.mapping.three_d import finishing
+    from momantu_skills.mapping.three_d import service as clouds
+
+if TYPE_CHECKING:
+    from momantu_skills.mapping.three_d.service import CloudService
+
 TREE = "examples/map_a_building"
+SPATIAL = "mapping_3d"
+"""Name of the service that maps in three dimensions."""
 RESOLUTION = 0.05
 """Cell of the map, m, as the tree saves it."""
 LONGEST = 3600.0
@@ -41,13 +51,17 @@ def explore(
     seed: int,
     folder: Path,
     told: Callable[[float, Mapping], None],
+    *,
+    spatial: bool = False,
 ) -> Explored:
     """Run the tree, and save what there is if it does not do so itself.
 
-    told: hears the clock, s, and the service after each tick.
+    told: hears the clock, s, and the service after each tick. spatial: map in three dimensions too,
+    and save that map.
 
     Raises:
         OutputError: the folder cannot be written.
+        InputError: the robot cannot map in three dimensions.
         MomantuError: the run cannot begin; see `momantu_bt.run`.
     """
     follower = _Follower(told)
@@ -55,6 +69,8 @@ def explore(
     def watch(run: Any) -> Sequence[Any]:
         follower.mapping = run.services.running["mapping"]
         follower.site = run.context.body.site
+        if spatial:
+            follower.clouds = _with_clouds(run)
         return [follower]
 
     report = momantu_bt.run(
@@ -69,9 +85,39 @@ def explore(
     )
     why = "" if report.failure is None else f"{report.failure.code}: {report.failure.message}"
     about = results.read_report(folder)
-    if about is None and len(follower.mapping.survey.used) >= FEWEST:
+    spatially = (
+        None if follower.clouds is None else _save_spatial(follower, follower.clouds, folder)
+    )
+    if spatially is not None:
+        about = spatially
+    elif about is None and len(follower.mapping.survey.used) >= FEWEST:
         about = _save(follower, folder)
     return Explored(report.status, why or (report.error or ""), about, report.sim_time_s)
+
+
+def _with_clouds(run: Any) -> CloudService:
+    """The service that maps in three dimensions, added to a run that has not begun."""
+    clouds.check(run.world.robot.description)
+    made = clouds.CloudService()
+    run.services.add(SPATIAL, made)
+    return made
+
+
+def _save_spatial(
+    follower: _Follower, service: CloudService, folder: Path
+) -> dict[str, Any] | None:
+    """Write the map in three dimensions, in the place of the plan; None: it has too few turns."""
+    survey, site = service.survey, follower.site
+    if survey is None or len(survey.mapper.keyframes) < finishing.FEWEST:
+        return None
+    stands = follower.mapping.stands
+    built = finishing.built_of(survey, RESOLUTION, service.band, service.height, stands)
+    names = Names.of(built.poses[0], site.places, site.surfaces)
+    results.check_folder(folder, replace=True)
+    results.write_folder(
+        folder, built.plan, built.stamps, built.poses, built.report, names, built.spatial
+    )
+    return built.report
 
 
 def _save(follower: _Follower, folder: Path) -> dict[str, Any]:
@@ -89,6 +135,7 @@ class _Follower:
     def __init__(self, told: Callable[[float, Mapping], None]) -> None:
         self._told = told
         self.mapping: Mapping
+        self.clouds: CloudService | None = None
         self.site: Any
 
     def ticked(self, run: Any) -> None:

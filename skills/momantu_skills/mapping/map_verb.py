@@ -40,14 +40,18 @@ def make_map(
     scan: Annotated[
         str | None, typer.Option(help="The laser's topic, in a bag or record with several.")
     ] = None,
+    dimensions: Annotated[
+        int, typer.Option(min=2, max=3, help="3: also a cloud of points, by lidar and IMU.")
+    ] = 2,
 ) -> ExitCode:
     """Make a floor plan: of a recorded log, or of a world that a robot explores.
 
     The folder gets map.yaml and map.pgm, as map_server reads them, map.png to look at,
     trajectory.tum with the pose of each scan, site.yaml with names, and report.json: all or none.
     The same log, or the same world, robot and seed, gives the same map. A robot that explores runs
-    the tree examples/map_a_building and knows nothing of the world. Ctrl-C ends the work: the map
-    of what was seen until then is saved.
+    the tree examples/map_a_building and knows nothing of the world. With --dimensions 3 the folder
+    gets cloud.pcd, as PCL reads it, and overhang.yaml with what hangs over the floor too. Ctrl-C
+    ends the work: the map of what was seen until then is saved.
 
     Exit code 0: the map is written; 1: the exploration failed, with the map so far; 2: the log or
     the arguments are wrong, and nothing is written; 130: interrupted, with the map so far.
@@ -58,12 +62,18 @@ def make_map(
       momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
       momantu-bt map --log runs/3 -o maps/flat
       momantu-bt map --world my_rooms.yaml --seed 3 -o maps/rooms
+      momantu-bt map --world four_rooms --robot kinova_jackal --dimensions 3 -o maps/rooms
     """
     if (log is None) == (world is None):
         raise InputError("give either --log with a log, or --world with a world to explore")
+    if log is not None and dimensions == 3:
+        raise InputError(
+            "logs are mapped in two dimensions: leave out --dimensions 3, or let a robot with a "
+            "lidar of several rings and an IMU explore a --world"
+        )
     results.check_folder(out)
     if world is not None:
-        return _explore(world, robot, seed, out)
+        return _explore(world, robot, seed, out, spatial=dimensions == 3)
     assert log is not None
     return _of_log(log, scan, out, resolution)
 
@@ -84,8 +94,8 @@ def _of_log(log: Path, scan: str | None, out: Path, resolution: float) -> ExitCo
     return ExitCode.INTERRUPTED if built.interrupted else ExitCode.SUCCESS
 
 
-def _explore(world: str, robot: str | None, seed: int, out: Path) -> ExitCode:
-    explored = exploring.explore(world, robot, seed, out, _Clock())
+def _explore(world: str, robot: str | None, seed: int, out: Path, *, spatial: bool) -> ExitCode:
+    explored = exploring.explore(world, robot, seed, out, _Clock(), spatial=spatial)
     if explored.about is None:
         raise InputError(f"nothing was mapped: {explored.why or explored.status}")
     if explored.why:
@@ -138,8 +148,10 @@ class _Progress:
 
 def _summary(about: dict[str, Any], out: Path) -> str:
     width, height = about["size_m"]
+    points = f"{about['points']} points; " if "points" in about else ""
     return (
-        f"{about['scans']} scans on {about['way_m']:.0f} m, {about['loops']} loops: a map of "
+        f"{points}{about['scans']} scans on {about['way_m']:.0f} m, {about['loops']} loops: "
+        f"a map of "
         f"{width:.1f} x {height:.1f} m, {about['free_m2']:.0f} square metres of it free\n"
         f"written to {out}: look at {out / results.PICTURE}"
     )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import io
 import itertools
 import json
-import math
 import os
 import shutil
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
 
@@ -26,7 +26,10 @@ with lazily():
 
 MAP, PICTURE, TRAJECTORY, REPORT = "map.yaml", "map.png", "trajectory.tum", "report.json"
 NAMES = "site.yaml"
+CLOUD, OVERHANG = "cloud.pcd", "overhang.yaml"
 FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES}
+SPATIAL_FILES = {CLOUD, OVERHANG, "overhang.pgm"}
+"""What a map in three dimensions has beside these."""
 _WAY = (200, 60, 40)
 _START, _END = (40, 140, 60), (40, 80, 200)
 _LEAST_EDGE = 800
@@ -46,9 +49,18 @@ def check_folder(folder: Path, *, replace: bool = False) -> None:
     held = {each.name for each in folder.iterdir()} if folder.is_dir() else set[str]()
     if held and not replace:
         raise OutputError(f"{folder} holds files already; choose another folder")
-    if not held <= FILES:
-        other = ", ".join(sorted(held - FILES)[:3])
+    if not held <= FILES | SPATIAL_FILES:
+        other = ", ".join(sorted(held - FILES - SPATIAL_FILES)[:3])
         raise OutputError(f"{folder} holds other files than a map's, such as {other}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spatial:
+    """What a map in three dimensions has more. cloud: a PCD file. trajectory: `map_from_base`."""
+
+    cloud: bytes
+    overhang: MapPicture
+    trajectory: Sequence[Transform]
 
 
 def write_folder(
@@ -58,10 +70,12 @@ def write_folder(
     poses: Sequence[Pose2D],
     report: dict[str, Any],
     names: Names | None = None,
+    spatial: Spatial | None = None,
 ) -> None:
     """Write a map, whole or not at all; a map that was there is replaced then.
 
-    names: what the robot was taught; by default nothing but where the map begins.
+    names: what the robot was taught; by default nothing but where the map begins. spatial: of a map
+    in three dimensions, whose poses have its stamps.
 
     Raises:
         OutputError: the folder cannot be written.
@@ -70,7 +84,11 @@ def write_folder(
     draft = folder.with_name(f".{folder.name}.{os.getpid()}.part")
     try:
         draft.mkdir(parents=True)
-        write_whole(draft / TRAJECTORY, _trajectory(stamps, poses))
+        ways = [pose.transform() for pose in poses] if spatial is None else spatial.trajectory
+        write_whole(draft / TRAJECTORY, _trajectory(stamps, ways))
+        if spatial is not None:
+            write_whole(draft / CLOUD, spatial.cloud)
+            write_map(draft / OVERHANG, spatial.overhang)
         write_whole(draft / PICTURE, _picture(plan, poses))
         write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
         write_whole(draft / NAMES, names.text())
@@ -122,14 +140,13 @@ def report_of(plan: MapPicture, poses: Sequence[Pose2D], loops: int) -> dict[str
     }
 
 
-def _trajectory(stamps: Sequence[float], poses: Sequence[Pose2D]) -> str:
+def _trajectory(stamps: Sequence[float], poses: Sequence[Transform]) -> str:
     """`map_from_base` in the TUM format: stamp x y z qx qy qz qw."""
     lines = ["# map_from_base: stamp x y z qx qy qz qw, s and m"]
     for stamp, pose in zip(stamps, poses, strict=True):
-        half = pose.yaw / 2
-        lines.append(
-            f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} 0 0 0 {math.sin(half):.9f} {math.cos(half):.9f}"
-        )
+        w, *turn = pose.quaternion
+        where = " ".join([f"{value:.6f}" for value in pose.position])
+        lines.append(f"{stamp:.6f} {where} {' '.join([f'{value:.9f}' for value in (*turn, w)])}")
     return "\n".join(lines) + "\n"
 
 
