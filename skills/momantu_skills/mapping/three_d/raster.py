@@ -18,8 +18,6 @@ SECTORS = 720
 """Beams of the scan that is made of a kept turn: one each half degree."""
 LOWEST = 0.1
 """Height above the floor below which a point may be the floor's, m: 20 m away at 5 mrad."""
-FEWEST = 2
-"""Points of the cloud in a cell from which on something hangs over it."""
 _SPAN = 1 << 20
 """Cells of the cloud along each axis: 52 km at 5 cm."""
 
@@ -90,7 +88,6 @@ def overhang_of(
     )
     rows, columns = plan.levels.shape
     on = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-    counts = np.zeros((rows, columns), np.int64)
-    np.add.at(counts, (row[on], column[on]), 1)
-    levels = np.where(counts >= FEWEST, BLACK, WHITE).astype(np.uint8)
+    levels = np.full((rows, columns), WHITE, np.uint8)
+    levels[row[on], column[on]] = BLACK
     return MapPicture(levels[::-1], plan.resolution, plan.origin, brightest=255)
