@@ -97,11 +97,31 @@ class LaserScan:
 
 @dataclass(frozen=True, slots=True)
 class PointCloud:
-    """The points of one turn of a lidar: (n, 3) float32, m, in `frame`; only beams that hit."""
+    """The points of one turn of a lidar: (n, 3) float32, m, in `frame`; only beams that hit.
+
+    times: (n,) float32, when each was measured, s after `stamp`, so never positive; each point lies
+    as seen from where the frame was then. None: all were measured at the stamp.
+    """
 
     stamp: float
     frame: str
     points: NDArray[np.float32]
+    times: NDArray[np.float32] | None = field(default=None, metadata=ENCODED_IF_SET)
+
+
+@dataclass(frozen=True, slots=True)
+class ImuReading:
+    """The newest samples of an IMU, oldest first, in `frame`; the last one is of `stamp`.
+
+    times: (k,) s, rising. rates: (k, 3) angular velocities, rad/s. forces: (k, 3) specific forces,
+    m/s2: acceleration less gravity, so 9.81 upwards at rest.
+    """
+
+    stamp: float
+    frame: str
+    times: Array
+    rates: Array
+    forces: Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from momantu_bt.frames import KinematicTree
 from momantu_bt.messages import (
     ActuatorGoal,
     CameraImage,
+    ImuReading,
     LaserScan,
     PointCloud,
     RobotState,
@@ -25,6 +26,7 @@ from momantu_bt.robot_parts import (
     BaseLimits,
     CameraSensor,
     EndEffector,
+    ImuSensor,
     JointLimit,
     LaserSensor,
     LidarSensor,
@@ -57,6 +59,7 @@ __all__ = [
     "CameraSensor",
     "Cuts",
     "EndEffector",
+    "ImuSensor",
     "JointGains",
     "JointLimit",
     "LaserSensor",
@@ -73,11 +76,12 @@ __all__ = [
     "WristWrench",
     "laser_band",
     "read_camera",
+    "read_imu",
     "read_laser",
     "read_lidar",
 ]
 
-SensorReading: TypeAlias = CameraImage | LaserScan | PointCloud | WrenchReading
+SensorReading: TypeAlias = CameraImage | ImuReading | LaserScan | PointCloud | WrenchReading
 
 CAMERA_CARRIER = "camera_carrier"
 """For a skill's `uses`: the actuator that carries the camera, a head or the arm."""
@@ -194,6 +198,11 @@ class RobotDescription(Part):
         lidars = {k: s for k, s in self.sensors.items() if isinstance(s, LidarSensor)}
         return _pick("lidar", lidars, name)
 
+    def imu(self, name: str | None = None) -> tuple[str, ImuSensor]:
+        """Name and description of an IMU: the named one, or the first; KeyError if none."""
+        imus = {k: s for k, s in self.sensors.items() if isinstance(s, ImuSensor)}
+        return _pick("imu", imus, name)
+
     def resolve_use(self, use: str) -> str | None:
         """The actuator that an entry of a skill's `uses` stands for on this robot.
 
@@ -297,4 +306,12 @@ def read_lidar(robot: Robot, name: str | None = None) -> PointCloud:
     reading = robot.read(robot.description.lidar(name)[0])
     if not isinstance(reading, PointCloud):
         raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not points")
+    return reading
+
+
+def read_imu(robot: Robot, name: str | None = None) -> ImuReading:
+    """Read the named IMU, or the robot's first one."""
+    reading = robot.read(robot.description.imu(name)[0])
+    if not isinstance(reading, ImuReading):
+        raise TypeError(f"sensor {name!r} gave a {type(reading).__name__}, not an IMU's samples")
     return reading

@@ -22,6 +22,7 @@ from momantu_bt.descriptions.quantities import (
     Length,
     LinearAcceleration,
     LinearSpeed,
+    Rate,
     Size,
     Time,
 )
@@ -178,6 +179,18 @@ class LidarSensor(Part):
     """Nearest distance that it measures."""
     range_max: Size
     """Farthest distance that it measures."""
+    turn: Annotated[Time, Field(gt=0, le=1.0)] | None = None
+    """Time of a full turn, in which it moves on; if not given, all points are of one instant."""
+
+
+class ImuSensor(Part):
+    """An inertial measurement unit: turning speeds and specific forces about three axes."""
+
+    kind: Literal["imu"] = "imu"
+    frame: str
+    """Where it sits, and the axes of what it measures."""
+    rate: Annotated[Rate, Field(le=1000)] = 100.0
+    """Samples per second; a simulator gives at most one for each step of its physics."""
 
 
 class WristWrench(Part):
@@ -189,7 +202,8 @@ class WristWrench(Part):
 
 
 Sensor: TypeAlias = Annotated[
-    CameraSensor | LaserSensor | LidarSensor | WristWrench, Field(discriminator="kind")
+    CameraSensor | ImuSensor | LaserSensor | LidarSensor | WristWrench,
+    Field(discriminator="kind"),
 ]
 
 

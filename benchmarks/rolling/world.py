@@ -111,7 +111,7 @@ class RollingRobot(ScriptedRobot):
         frames = (self.description.sensors[source].frame, sensor.frame)
         lidar, own = (self._tree.base_from_frame(each, {}) for each in frames)
 
-        def cloud() -> PointCloud:
+        def cloud(stamp: float) -> PointCloud:
             reading = self.read(source)
             assert isinstance(reading, PointCloud)
             return reading
@@ -124,11 +124,11 @@ class RollingRobot(ScriptedRobot):
             return self._at(sensor.frame)
 
         errors = self._config.lidar
-        lidar = Lidar(at, name, sensor, self._rays, [], _NoBody(), seed, errors)  # type: ignore[arg-type]
-        return lambda robot: lidar.read(robot.time)
+        lidar = Lidar(at, name, sensor, self._rays, [], NoBody(), seed, errors)  # type: ignore[arg-type]
+        return lambda robot: lidar.at_once(robot.time)
 
 
-class _NoBody:
+class NoBody:
     """A robot whose own links hide nothing."""
 
     def poses(self, map_from_frame: Transform) -> Array:

@@ -83,6 +83,10 @@ def _sensor(sensor: Mapping[str, Any]) -> str:
             words.append(f"made from {sensor['source']}, what stands {low:g} to {high:g} m high")
     if kind == "lidar":
         words.append(f"{len(sensor['elevations'])} rings of {sensor['columns']}")
+        if "turn" in sensor:
+            words.append(f"a turn takes {sensor['turn']:g} s")
+    if kind == "imu":
+        words.append(f"{sensor['rate']:g} samples a second")
     if kind in ("laser", "lidar"):
         words.append(f"{sensor['range_min']:g} to {sensor['range_max']:g} m")
     return "; ".join(words)

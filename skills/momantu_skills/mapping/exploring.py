@@ -5,17 +5,28 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import momantu_bt
 from momantu_bt.geometry import Pose2D
+from momantu_bt.lazy import lazily
+from momantu_bt.site_file import Names
 from momantu_bt.world import World
 from momantu_skills.mapping import building, results
 from momantu_skills.mapping.building import FEWEST
 from momantu_skills.mapping.extending import Earlier, named
 from momantu_skills.mapping.own import Mapping
 
+with lazily():
+    from momantu_skills.mapping.three_d import finishing
+    from momantu_skills.mapping.three_d import service as clouds
+
+if TYPE_CHECKING:
+    from momantu_skills.mapping.three_d.service import CloudService
+
 TREE = "examples/map_a_building"
+SPATIAL = "mapping_3d"
+"""Name of the service that maps in three dimensions."""
 RESOLUTION = 0.05
 """Cell of the map, m, as the tree saves it."""
 LONGEST = 3600.0
@@ -45,6 +56,8 @@ def explore(
     told: Callable[[float, Mapping], None],
     earlier: Earlier | None = None,
     view: int | None = None,
+    *,
+    spatial: bool = False,
 ) -> Explored:
     """Run the tree, and save what there is if it does not do so itself.
 
@@ -53,10 +66,11 @@ def explore(
 
     folder: is made, or holds the earlier map, which is replaced then. told: hears the clock, s, and
     the service after each tick. earlier: a map to go on with. view: the port of a view in a
-    browser.
+    browser. spatial: map in three dimensions too, and save that map.
 
     Raises:
         OutputError: the folder cannot be written.
+        InputError: the robot cannot map in three dimensions.
         MomantuError: the run cannot begin; see `momantu_bt.run`.
     """
     follower = _Follower(told)
@@ -64,9 +78,12 @@ def explore(
 
     def watch(run: Any) -> Sequence[Any]:
         follower.mapping = run.services.running["mapping"]
+        follower.site = run.context.body.site
+        if spatial:
+            follower.clouds = _with_clouds(run)
         if earlier is not None:
             follower.mapping.earlier = earlier
-            named(run.context.body.site, earlier)
+            named(follower.site, earlier)
         return [follower]
 
     report = momantu_bt.run(
@@ -87,10 +104,40 @@ def explore(
     about = None
     if report.status == "SUCCESS":
         about = results.read_report(folder)
-    elif len(mapping.survey.used) >= FEWEST:
+    spatially = (
+        None if follower.clouds is None else _save_spatial(follower, follower.clouds, folder)
+    )
+    if spatially is not None:
+        about = spatially
+    elif about is None and len(mapping.survey.used) >= FEWEST:
         about = _save(mapping, folder)
     begun = None if earlier is None else mapping.begun
     return Explored(report.status, why, about, report.sim_time_s, begun)
+
+
+def _with_clouds(run: Any) -> CloudService:
+    """The service that maps in three dimensions, added to a run that has not begun."""
+    clouds.check(run.world.robot.description)
+    made = clouds.CloudService()
+    run.services.add(SPATIAL, made)
+    return made
+
+
+def _save_spatial(
+    follower: _Follower, service: CloudService, folder: Path
+) -> dict[str, Any] | None:
+    """Write the map in three dimensions, in the place of the plan; None: it has too few turns."""
+    survey, site = service.survey, follower.site
+    if survey is None or len(survey.mapper.keyframes) < finishing.FEWEST:
+        return None
+    stands = follower.mapping.stands
+    built = finishing.built_of(survey, RESOLUTION, service.band, service.height, stands)
+    names = Names.of(built.poses[0], site.places, site.surfaces)
+    results.check_folder(folder, replace=True)
+    results.write_folder(
+        folder, built.plan, built.stamps, built.poses, built.report, None, names, built.spatial
+    )
+    return built.report
 
 
 def _save(mapping: Mapping, folder: Path) -> dict[str, Any]:
@@ -107,6 +154,8 @@ class _Follower:
     def __init__(self, told: Callable[[float, Mapping], None]) -> None:
         self._told = told
         self.mapping: Mapping
+        self.clouds: CloudService | None = None
+        self.site: Any
 
     def ticked(self, run: Any) -> None:
         """Tell of the tick."""

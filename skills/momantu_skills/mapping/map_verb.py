@@ -62,6 +62,9 @@ def make_map(
         bool, typer.Option("--view", help="Serve the scene to a browser; with --world.")
     ] = False,
     view_port: Annotated[int, typer.Option(help="The port of --view.")] = VIEW_PORT,
+    dimensions: Annotated[
+        int, typer.Option(min=2, max=3, help="3: also a cloud of points, by lidar and IMU.")
+    ] = 2,
 ) -> ExitCode:
     """Make a floor plan of a recorded log or of a world to explore; show and compare maps.
 
@@ -69,7 +72,9 @@ def make_map(
     trajectory.tum with the pose of each scan, site.yaml with names, report.json, and survey.npz
     with what the map was made of: all or none. The same log, or the same world, robot and seed,
     gives the same map. A robot that explores runs the tree examples/map_a_building and knows
-    nothing of the world. Ctrl-C ends the work: the map of what was seen until then is saved.
+    nothing of the world. With --dimensions 3 the folder gets cloud.pcd, as PCL reads it, and
+    overhang.yaml with what hangs over the floor. Ctrl-C ends the work: the map of what was seen
+    until then is saved.
 
     --extend goes on with a map: the robot finds itself on it near where its site says that it
     starts; a log is laid on it wherever it begins. DIR stays as it is, unless -o names it.
@@ -87,6 +92,7 @@ def make_map(
       momantu-bt map --log today.log --extend maps/office -o maps/office
       momantu-bt map show maps/rooms
       momantu-bt map compare maps/rooms maps/rooms_today -o difference.png
+      momantu-bt map --world four_rooms --robot kinova_jackal --dimensions 3 -o maps/rooms
     """
     if context.invoked_subcommand is not None:
         if any(given is not None for given in (out, log, world)):
@@ -101,10 +107,13 @@ def make_map(
         raise InputError("give -o with a new folder for the map")
     if view and world is None:
         raise InputError("--view shows a world that a robot explores: give --world")
+    if dimensions == 3:
+        _check_spatial(log, extend)
     results.check_folder(out, replace=extend is not None and out.resolve() == extend.resolve())
     earlier = None if extend is None else extending.read_earlier(extend)
     if world is not None:
-        return _explore(world, robot, seed, out, earlier, view_port if view else None)
+        shown = view_port if view else None
+        return _explore(world, robot, seed, out, earlier, shown, spatial=dimensions == 3)
     assert log is not None
     return _of_log(log, scan, out, resolution, earlier)
 
@@ -137,6 +146,20 @@ def _of_log(
     return ExitCode.INTERRUPTED if built.interrupted else ExitCode.SUCCESS
 
 
+def _check_spatial(log: Path | None, extend: Path | None) -> None:
+    """Refuse what is done in two dimensions alone."""
+    if log is not None:
+        raise InputError(
+            "logs are mapped in two dimensions: leave out --dimensions 3, or let a robot with a "
+            "lidar of several rings and an IMU explore a --world"
+        )
+    if extend is not None:
+        raise InputError(
+            "--extend goes on with a map in two dimensions: leave out --dimensions 3, or leave "
+            "out --extend and map the whole world anew"
+        )
+
+
 def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D | None:
     """Where the log begins on an earlier map; None if that was interrupted."""
     alone = surveys.Survey()
@@ -159,12 +182,19 @@ def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D 
 
 
 def _explore(
-    world: str, robot: str | None, seed: int, out: Path, earlier: Earlier | None, view: int | None
+    world: str,
+    robot: str | None,
+    seed: int,
+    out: Path,
+    earlier: Earlier | None,
+    view: int | None,
+    *,
+    spatial: bool,
 ) -> ExitCode:
     if view is not None:
         typer.echo(f"view: http://127.0.0.1:{view}")
     with progress.Exploration() as told:
-        explored = exploring.explore(world, robot, seed, out, told, earlier, view)
+        explored = exploring.explore(world, robot, seed, out, told, earlier, view, spatial=spatial)
     if explored.about is None:
         raise InputError(f"nothing was mapped: {explored.why or explored.status}")
     if explored.why:
@@ -180,8 +210,10 @@ def _explore(
 
 def _summary(about: dict[str, Any], out: Path) -> str:
     width, height = about["size_m"]
+    points = f"{about['points']} points; " if "points" in about else ""
     return (
-        f"{about['scans']} scans on {about['way_m']:.0f} m, {about['loops']} loops: a map of "
+        f"{points}{about['scans']} scans on {about['way_m']:.0f} m, {about['loops']} loops: "
+        f"a map of "
         f"{width:.1f} x {height:.1f} m, {about['free_m2']:.0f} square metres of it free\n"
         f"written to {out}: look at {out / results.PICTURE}"
     )

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 import os
 import shutil
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from momantu_bt.formats.files import OutputError, write_whole
 from momantu_bt.formats.map_folder import MAP, NAMES
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
 from momantu_skills.mapping.mapper import Graph
@@ -25,7 +25,10 @@ with lazily():
 
 PICTURE, TRAJECTORY, REPORT = "map.png", "trajectory.tum", "report.json"
 SURVEY = "survey.npz"
+CLOUD, OVERHANG = "cloud.pcd", "overhang.yaml"
 FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES, SURVEY}
+SPATIAL_FILES = {CLOUD, OVERHANG, "overhang.pgm"}
+"""What a map in three dimensions has beside these."""
 
 
 def check_folder(folder: Path, *, replace: bool = False) -> None:
@@ -41,9 +44,18 @@ def check_folder(folder: Path, *, replace: bool = False) -> None:
     held = {each.name for each in folder.iterdir()} if folder.is_dir() else set[str]()
     if held and not replace:
         raise OutputError(f"{folder} holds files already; choose another folder")
-    if not held <= FILES:
-        other = ", ".join(sorted(held - FILES)[:3])
+    if not held <= FILES | SPATIAL_FILES:
+        other = ", ".join(sorted(held - FILES - SPATIAL_FILES)[:3])
         raise OutputError(f"{folder} holds other files than a map's, such as {other}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spatial:
+    """What a map in three dimensions has more. cloud: a PCD file. trajectory: `map_from_base`."""
+
+    cloud: bytes
+    overhang: MapPicture
+    trajectory: Sequence[Transform]
 
 
 def write_folder(
@@ -52,13 +64,15 @@ def write_folder(
     stamps: Sequence[float],
     poses: Sequence[Pose2D],
     report: dict[str, Any],
-    survey: bytes,
+    survey: bytes | None,
     names: Names | None = None,
+    spatial: Spatial | None = None,
 ) -> None:
     """Write a map, whole or not at all; a map that was there is replaced then.
 
-    survey: what it was made of, as `stored.packed` has it. names: what the robot was taught; by
-    default nothing but where the map begins.
+    survey: what it was made of, as `stored.packed` has it; None: it cannot be extended. names: what
+    the robot was taught; by default nothing but where the map begins. spatial: of a map in three
+    dimensions, whose poses have its stamps.
 
     Raises:
         OutputError: the folder cannot be written.
@@ -67,11 +81,16 @@ def write_folder(
     draft = folder.with_name(f".{folder.name}.{os.getpid()}.part")
     try:
         draft.mkdir(parents=True)
-        write_whole(draft / TRAJECTORY, _trajectory(stamps, poses))
+        ways = [pose.transform() for pose in poses] if spatial is None else spatial.trajectory
+        write_whole(draft / TRAJECTORY, _trajectory(stamps, ways))
+        if spatial is not None:
+            write_whole(draft / CLOUD, spatial.cloud)
+            write_map(draft / OVERHANG, spatial.overhang)
         write_whole(draft / PICTURE, floor_plan.floor_plan_png(GridMap.of(plan), poses, names))
         write_whole(draft / REPORT, json.dumps(report, indent=2) + "\n")
         write_whole(draft / NAMES, names.text())
-        write_whole(draft / SURVEY, survey)
+        if survey is not None:
+            write_whole(draft / SURVEY, survey)
         write_map(draft / MAP, plan)
         _take_place(draft, folder)
     except OutputError:
@@ -122,12 +141,11 @@ def report_of(plan: MapPicture, graph: Graph) -> dict[str, Any]:
     }
 
 
-def _trajectory(stamps: Sequence[float], poses: Sequence[Pose2D]) -> str:
+def _trajectory(stamps: Sequence[float], poses: Sequence[Transform]) -> str:
     """`map_from_base` in the TUM format: stamp x y z qx qy qz qw."""
     lines = ["# map_from_base: stamp x y z qx qy qz qw, s and m"]
     for stamp, pose in zip(stamps, poses, strict=True):
-        half = pose.yaw / 2
-        lines.append(
-            f"{stamp:.6f} {pose.x:.6f} {pose.y:.6f} 0 0 0 {math.sin(half):.9f} {math.cos(half):.9f}"
-        )
+        w, *turn = pose.quaternion
+        where = " ".join([f"{value:.6f}" for value in pose.position])
+        lines.append(f"{stamp:.6f} {where} {' '.join([f'{value:.9f}' for value in (*turn, w)])}")
     return "\n".join(lines) + "\n"

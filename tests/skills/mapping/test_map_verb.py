@@ -109,3 +109,10 @@ def test_a_world_that_is_not_there_is_told_and_nothing_is_written(tmp_path, caps
     assert main(["map", "--world", "moon", "-o", str(tmp_path / "map")]) == ExitCode.WRONG_INPUT
     assert "no world is called 'moon'" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_log_is_not_mapped_in_three_dimensions(log, tmp_path, capsys):
+    arguments = ["map", "--log", str(log), "--dimensions", "3", "-o", str(tmp_path / "out")]
+    assert main(arguments) == ExitCode.WRONG_INPUT
+    assert "leave out --dimensions 3" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

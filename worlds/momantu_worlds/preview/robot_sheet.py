@@ -137,7 +137,7 @@ def _frames(
         hand = tree.base_from_frame(effector.frame, joints)
         yield "hand", hand @ Transform((effector.grasp_offset, 0.0, 0.0))
     for name, sensor in description.sensors.items():
-        if sensor.kind != "wrench":
+        if sensor.kind not in ("imu", "wrench"):
             yield name, tree.base_from_frame(sensor.frame, joints)
 
 

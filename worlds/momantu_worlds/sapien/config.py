@@ -130,6 +130,20 @@ class LidarErrors:
 
 
 @dataclass(frozen=True)
+class ImuErrors:
+    """Errors of an IMU as small robots carry it; 1-sigma. Densities are those of one axis."""
+
+    rate_bias: float = 0.003
+    """Bias of turning speeds, rad/s per axis, constant in an episode."""
+    rate_noise: float = 1.5e-4
+    """Density of their noise, rad/s per sqrt(Hz)."""
+    force_bias: float = 0.05
+    """Bias of specific forces, m/s2 per axis, constant in an episode."""
+    force_noise: float = 2e-3
+    """Density of their noise, m/s2 per sqrt(Hz)."""
+
+
+@dataclass(frozen=True)
 class WrenchErrors:
     """Errors of the wrist's force and torque; 1-sigma."""
 
@@ -153,4 +167,5 @@ class SimulatorConfig:
     camera: CameraErrors = field(default_factory=CameraErrors)
     laser: LaserErrors = field(default_factory=LaserErrors)
     lidar: LidarErrors = field(default_factory=LidarErrors)
+    imu: ImuErrors = field(default_factory=ImuErrors)
     wrench: WrenchErrors = field(default_factory=WrenchErrors)

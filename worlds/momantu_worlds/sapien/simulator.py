@@ -21,6 +21,8 @@ from momantu_worlds.sapien.config import STEP, SUB_STEPS, Physics, SimulatorConf
 from momantu_worlds.sapien.poses import pose_of
 from momantu_worlds.sapien.robot import SimulatedRobot
 from momantu_worlds.sapien.sensors.builder import SensorBuilder
+from momantu_worlds.sapien.sensors.imu import Imu
+from momantu_worlds.sapien.sensors.lidar import Lidar
 from momantu_worlds.sapien.sensors.wrench import Wrench
 from momantu_worlds.scenes.geometry.bodies import Body, Episode
 
@@ -86,11 +88,12 @@ class Simulator:
             self.now,
         )
         builder = SensorBuilder(
-            self.scene, description, model, still, self._moving, seed, self.config, self.robot.peek
+            self.scene, description, model, still, self._moving, seed, self.config
         )
         self.robot.sensors.update(builder.build(render=render))
         self.model = model
         self._wrists = [s for s in self.robot.sensors.values() if isinstance(s, Wrench)]
+        self._sampled = [s for s in self.robot.sensors.values() if isinstance(s, Imu | Lidar)]
 
     def now(self) -> float:
         """Seconds since the episode began."""
@@ -113,6 +116,9 @@ class Simulator:
                 wrist.collect()
             if self.truth.watching:
                 self.truth.collect(last=index == SUB_STEPS - 1)
+            for sensor in self._sampled:
+                if sensor.asked:
+                    sensor.collect(self._now + (index + 1) * STEP)
         self._ticks += 1
         self._now = round(self._ticks * TICK, 9)
         self.robot.end_tick()

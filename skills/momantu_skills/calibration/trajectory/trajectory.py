@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
+from momantu_bt.motion import slerp
 from momantu_skills.calibration.poses import Mask, Poses, rotations_of_quaternions
 
 NEAR = 1e-3
@@ -74,22 +75,9 @@ class Trajectory:
         positions = (1 - share[:, None]) * self.positions[before] + share[:, None] * (
             self.positions[after]
         )
-        turned = _slerp(self.quaternions[before], self.quaternions[after], share)
+        turned = slerp(self.quaternions[before], self.quaternions[after], share)
         return _poses(positions, turned), between | (away <= NEAR)
 
 
 def _poses(positions: Array, quaternions: Array) -> Poses:
     return Poses(rotations_of_quaternions(quaternions), positions)
-
-
-def _slerp(first: Array, second: Array, share: Array) -> Array:
-    """Quaternions (M, 4) on the shorter way between two rows of quaternions."""
-    cosine = (first * second).sum(axis=1)
-    second = np.where(cosine[:, None] < 0, -second, second)
-    angle = np.arccos(np.clip(abs(cosine), 0.0, 1.0))
-    sine = np.sin(angle)
-    small = sine < 1e-8
-    safe = np.where(small, 1.0, sine)
-    weight = np.where(small, 1 - share, np.sin((1 - share) * angle) / safe)
-    other = np.where(small, share, np.sin(share * angle) / safe)
-    return np.asarray(weight[:, None] * first + other[:, None] * second)

@@ -15,7 +15,8 @@ from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Episode, 
 from momantu_worlds.testing import WALL_FACE, plain_episode
 
 from momantu_bt.geometry import Array, Pose2D, Transform
-from momantu_bt.messages import LaserScan, PointCloud, frozen
+from momantu_bt.messages import BaseVelocity, LaserScan, PointCloud, frozen
+from momantu_bt.motion import Motion
 from momantu_bt.robot import LaserSensor
 
 ROBOT = kinova_jackal()
@@ -89,7 +90,7 @@ def test_some_rays_are_lost_and_which_depends_on_the_stamp() -> None:
     simulator = simulated(world())
     lidar = lidar_of(simulator)
     exact = lidar.exact()
-    shares = [len(lidar.read(0.05 * i).points) / np.isfinite(exact).sum() for i in range(10)]
+    shares = [len(lidar.at_once(0.05 * i).points) / np.isfinite(exact).sum() for i in range(10)]
     assert 1.0 - np.mean(shares) == pytest.approx(simulator.config.lidar.drop_out, rel=0.3)
     assert np.array_equal(lidar.read(0.1).points, lidar.read(0.1).points)
     assert not np.array_equal(lidar.read(0.1).points[:50], lidar.read(0.2).points[:50])
@@ -146,6 +147,78 @@ def test_loose_things_are_met_where_they_are_now() -> None:
     simulator.remove("visitor")
     simulator.step()
     assert on_barrel(1.0, 0.9) == 0
+
+
+# turns that take time
+
+
+def driven(linear: float, angular: float) -> Simulator:
+    """A robot that has driven for a second, its lidar read throughout."""
+    simulator = simulated(world(start=Pose2D(-1.0, 0.3, 0.0)))
+    simulator.robot.read(NAME)
+    for _ in range(20):
+        simulator.robot.command("base", BaseVelocity(linear, angular))
+        simulator.step()
+    return simulator
+
+
+def turned(simulator: Simulator) -> PointCloud:
+    reading = simulator.robot.read(NAME)
+    assert isinstance(reading, PointCloud)
+    return reading
+
+
+def test_points_of_a_turn_tell_when_they_were_measured() -> None:
+    reading = turned(driven(0.0, 0.0))
+    assert reading.times is not None
+    assert SENSOR.turn is not None
+    assert np.all(np.diff(reading.times) >= 0.0)
+    assert reading.times[-1] <= 0.0
+    assert reading.times[0] >= -SENSOR.turn
+    assert np.ptp(reading.times) > 0.9 * SENSOR.turn
+
+
+def test_the_head_turns_evenly_whenever_it_is_read() -> None:
+    simulator = driven(0.0, 0.0)
+    for _ in range(3):
+        reading = turned(simulator)
+        assert reading.times is not None
+        angles = np.arctan2(reading.points[:, 1], reading.points[:, 0])
+        phase = 2 * np.pi * (reading.stamp + reading.times) / SENSOR.turn
+        apart = np.angle(np.exp(1j * (phase - angles)))
+        assert np.ptp(apart) < 0.01
+        simulator.step()
+
+
+@pytest.mark.parametrize(("linear", "angular"), [(0.9, 0.0), (0.0, 1.4), (0.7, -1.0)])
+def test_a_turn_on_the_move_is_skewed_and_its_motion_sets_it_right(
+    linear: float, angular: float
+) -> None:
+    simulator = driven(linear, angular)
+    before = simulator.truth.link(SENSOR.frame)
+    simulator.robot.command("base", BaseVelocity(linear, angular))
+    simulator.step()
+    middle = simulator.truth.link(SENSOR.frame)
+    simulator.robot.command("base", BaseVelocity(linear, angular))
+    simulator.step()
+    reading, now = turned(simulator), simulator.truth.link(SENSOR.frame)
+    assert reading.times is not None
+    turns, places = Motion.of([-0.1, -0.05, 0.0], [before, middle, now]).at(reading.times)
+    straight = np.einsum("nij,nj->ni", turns, reading.points) + places
+    wall = np.abs(straight[:, 0] - WALL_FACE) < 0.06
+    assert np.count_nonzero(wall) > 300
+    assert np.std(straight[wall, 0]) < 0.012
+    skewed = now.apply(reading.points[wall])
+    assert np.abs(skewed - straight[wall]).max() > 0.04
+
+
+def test_a_scan_made_from_it_is_of_one_instant() -> None:
+    asked, other = driven(0.8, 0.6), simulated(world(start=Pose2D(-1.0, 0.3, 0.0)))
+    for _ in range(20):
+        other.robot.command("base", BaseVelocity(0.8, 0.6))
+        other.step()
+    assert not lidar_of(other).asked
+    assert np.array_equal(scan(asked).ranges, scan(other).ranges)
 
 
 # the scan that is made from it
@@ -209,7 +282,7 @@ def test_the_nearest_point_of_a_sector_counts_and_others_do_not() -> None:
         dtype=np.float32,
     )
     made = BandLaser(
-        lambda: PointCloud(1.0, "lidar", frozen(points)),
+        lambda stamp: PointCloud(stamp, "lidar", frozen(points)),
         sensor,
         Transform((0.0, 0.0, 0.4)),
         Transform((0.0, 0.0, 0.3)),

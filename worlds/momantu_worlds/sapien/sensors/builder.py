@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -11,11 +11,11 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import PointCloud
 from momantu_bt.robot import (
     CameraSensor,
+    ImuSensor,
     LaserSensor,
     LidarSensor,
     RobotDescription,
     Sensor,
-    SensorReading,
 )
 from momantu_worlds.sapien.build.moving import MovingBody
 from momantu_worlds.sapien.build.robot_model import RobotModel
@@ -23,6 +23,7 @@ from momantu_worlds.sapien.config import SimulatorConfig
 from momantu_worlds.sapien.poses import transform_of
 from momantu_worlds.sapien.robot import Sensor as Readable
 from momantu_worlds.sapien.sensors.camera import Camera
+from momantu_worlds.sapien.sensors.imu import Imu, moving_link
 from momantu_worlds.sapien.sensors.laser import BandLaser, Laser
 from momantu_worlds.sapien.sensors.lidar import Lidar
 from momantu_worlds.sapien.sensors.own_body import OwnBody, housing
@@ -35,7 +36,7 @@ class SensorBuilder:
     """Makes the sensors of one robot in one scene.
 
     still: triangles (k, 3, 3) of all static bodies, in the map. moving: the current list of loose
-    bodies, which may change. peek: the newest reading of another sensor.
+    bodies, which may change.
     """
 
     scene: Any
@@ -45,15 +46,14 @@ class SensorBuilder:
     moving: list[MovingBody]
     seed: int
     config: SimulatorConfig
-    peek: Callable[[str], SensorReading]
+    _built: dict[str, Readable] = field(default_factory=dict)
 
     def build(self, *, render: bool) -> dict[str, Readable]:
         """All sensors by name; without `render` there are no cameras."""
-        return {
-            name: self._sensor(name, spec)
-            for name, spec in self.description.sensors.items()
-            if render or not isinstance(spec, CameraSensor)
-        }
+        for name, spec in self.description.sensors.items():
+            if render or not isinstance(spec, CameraSensor):
+                self._built[name] = self._sensor(name, spec)
+        return self._built
 
     def _sensor(self, name: str, spec: Sensor) -> Readable:
         link, seed, config = self.model.links[spec.frame], self.seed, self.config
@@ -65,6 +65,8 @@ class SensorBuilder:
             own = OwnBody(each for each in self.model.links.values() if each is not around)
             at = _pose_source(link)
             return Lidar(at, name, spec, self._rays, self.moving, own, seed, config.lidar)
+        if isinstance(spec, ImuSensor):
+            return Imu(moving_link(link), name, spec, seed, config.imu)
         if isinstance(spec, LaserSensor):
             if spec.source is not None:
                 return self._made_from(spec.source, spec)
@@ -94,10 +96,10 @@ class SensorBuilder:
         frames = (self.description.sensors[source].frame, spec.frame)
         base_from_lidar, base_from_laser = (tree.base_from_frame(each, {}) for each in frames)
 
-        def cloud() -> PointCloud:
-            reading = self.peek(source)
-            assert isinstance(reading, PointCloud)
-            return reading
+        def cloud(stamp: float) -> PointCloud:
+            lidar = self._built[source]
+            assert isinstance(lidar, Lidar)
+            return lidar.at_once(stamp)
 
         return BandLaser(cloud, spec, base_from_lidar, base_from_laser)
 

@@ -99,13 +99,13 @@ def _to_segments(origin: Array, directions: Array, segments: Array) -> Array:
 class BandLaser:
     """Uses the points within a band of heights above the floor.
 
-    cloud: returns the lidar's current points. base_from_lidar, base_from_laser: from the
-    description, not the true ones, as in a robot's driver.
+    cloud: returns the lidar's points of a stamp, as if all were of that instant. base_from_lidar,
+    base_from_laser: from the description, not the true ones, as in a robot's driver.
     """
 
     def __init__(
         self,
-        cloud: Callable[[], PointCloud],
+        cloud: Callable[[float], PointCloud],
         sensor: LaserSensor,
         base_from_lidar: Transform,
         base_from_laser: Transform,
@@ -117,7 +117,7 @@ class BandLaser:
 
     def read(self, stamp: float) -> LaserScan:
         """Take a scan now."""
-        return scan_of(self._sensor, stamp, self._nearest(self._cloud().points))
+        return scan_of(self._sensor, stamp, self._nearest(self._cloud(stamp).points))
 
     def _nearest(self, points: NDArray[np.float32]) -> Array:
         """Distance (beams,) to the nearest point of each sector, m; range_max if there is none."""

@@ -20,8 +20,11 @@ class Triangles:
         self._mesh = TriangleMesh(self._scene, triangles.astype(np.float32))
 
     def distances(self, origin: Array, directions: Array) -> Array:
-        """Distances along unit rays (n, 3) from one point, m; infinite if nothing is hit."""
-        origins = np.repeat(origin[None], len(directions), axis=0)
+        """Distances along unit rays (n, 3) from one point (3,), or from points (n, 3), m.
+
+        Infinite if nothing is hit.
+        """
+        origins = np.broadcast_to(origin, directions.shape)
         hit = self._scene.run(
             origins.astype(np.float32), directions.astype(np.float32), query="DISTANCE"
         )
