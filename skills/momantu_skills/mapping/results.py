@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from momantu_bt.formats.files import OutputError, write_whole
-from momantu_bt.formats.map_folder import MAP, NAMES
+from momantu_bt.formats.map_folder import MAP, NAMES, OVERHANG
 from momantu_bt.formats.maps import FREE, OCCUPIED, MapPicture, write_map
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.lazy import lazily
@@ -25,7 +25,7 @@ with lazily():
 
 PICTURE, TRAJECTORY, REPORT = "map.png", "trajectory.tum", "report.json"
 SURVEY = "survey.npz"
-CLOUD, OVERHANG = "cloud.pcd", "overhang.yaml"
+CLOUD = "cloud.pcd"
 FILES = {MAP, "map.pgm", PICTURE, TRAJECTORY, REPORT, NAMES, SURVEY}
 SPATIAL_FILES = {CLOUD, OVERHANG, "overhang.pgm"}
 """What a map in three dimensions has beside these."""
@@ -126,7 +126,6 @@ def read_report(folder: Path) -> dict[str, Any] | None:
 
 def report_of(plan: MapPicture, graph: Graph) -> dict[str, Any]:
     """What is known of a map, as plain data: m and square metres."""
-    cells, area = plan.cells(), plan.resolution**2
     steps = zip(itertools.pairwise(graph.poses), graph.motions, strict=True)
     way = sum(a.distance_to(b) for (a, b), motion in steps if motion is not None)
     return {
@@ -134,6 +133,14 @@ def report_of(plan: MapPicture, graph: Graph) -> dict[str, Any]:
         "sessions": 1 + graph.motions.count(None),
         "way_m": round(way, 3),
         "loops": len(graph.loops),
+        **extent_of(plan),
+    }
+
+
+def extent_of(plan: MapPicture) -> dict[str, Any]:
+    """The size of a floor plan, as plain data: m and square metres."""
+    cells, area = plan.cells(), plan.resolution**2
+    return {
         "resolution_m": plan.resolution,
         "size_m": [round(edge * plan.resolution, 3) for edge in cells.shape[::-1]],
         "free_m2": round(float((cells == FREE).sum() * area), 2),

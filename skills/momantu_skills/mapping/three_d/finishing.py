@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from momantu_bt.formats.maps import MapPicture
-from momantu_bt.geometry import Pose2D, Transform
+from momantu_bt.geometry import Pose2D, Transform, path_lengths
 from momantu_skills.mapping.occupancy import floor_plan
-from momantu_skills.mapping.results import Spatial, report_of
+from momantu_skills.mapping.results import Spatial, extent_of
 from momantu_skills.mapping.three_d.pcd import pcd
 from momantu_skills.mapping.three_d.raster import cloud_of, overhang_of, scans_of
 from momantu_skills.mapping.three_d.surveying import CloudSurvey
@@ -54,7 +54,10 @@ def built_of(
         "turns_read": len(places),
         "turns_doubtful": mapper.doubtful,
         "points": len(cloud),
-        **report_of(plan, kept, len(mapper.closed)),
+        "scans": len(kept),
+        "way_m": round(path_lengths(kept)[-1], 3),
+        "loops": len(mapper.closed),
+        **extent_of(plan),
     }
     return BuiltCloud(plan, stamps, _on_floor(places), report, spatial)
 
