@@ -4,8 +4,8 @@
 
 A base with the sensors of kinova_jackal rolls from place to place at random until it has gone
 that far, then back to where it began; `--sway` lets it roll and pitch. Off is how far the mapped
-end lies from the true one, as a share of the way; points are those of the cloud, and their distance
-to the nearest true surface.
+end lies from the true one, as a share of the way; the way itself is compared turn by turn. Points
+are those of the cloud, compared with the nearest true surface.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import json
 import math
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ from momantu_worlds.robots import kinova_jackal
 from momantu_worlds.sapien.build.meshes import map_triangles
 from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.geometry.plane import Passages
-from momantu_worlds.scenes.loading import draw_episode, load_world
+from momantu_worlds.scenes.loading import draw_episode
 from rolling.turning import Tick, Turning
 from rolling.world import free_floor
 from scipy.spatial import cKDTree
@@ -94,49 +95,66 @@ def surfaces_apart(points: Array, triangles: Array) -> Array:
     return best
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Mapped:
+    """A drive and its map. passed: (n, 3) true places of the turns; wheels: where odometry ends."""
+
+    survey: CloudSurvey
+    way: float
+    passed: Array
+    wheels: Transform
+    seconds: float
+
+
+def mapped(episode: Episode, seed: int, way: float, sway: float) -> Mapped:
+    """Drive through a world and map it."""
+    turning = Turning(kinova_jackal(), episode, seed, sway)
+    start = episode.start.transform()
+    survey = CloudSurvey(turning.base_from_imu, start)
+    passed, seconds, wheels = [], 0.0, start
+    for number, tick in enumerate(ways(turning, episode, way, seed)):
+        cloud = turning.turn() if number % 2 else None
+        began = time.process_time()
+        survey.move(tick.stamp, tick.odom_from_base, tick.imu)
+        if cloud is not None:
+            survey.add(cloud, turning.base_from_lidar)
+            passed.append(tick.truth.position)
+        seconds += time.process_time() - began
+        wheels = start @ tick.odom_from_base
+    began = time.process_time()
+    survey.mapper.finish()
+    seconds += time.process_time() - began
+    return Mapped(survey, turning.way, np.array(passed), wheels, seconds)
+
+
 def measured(world: str, seed: int, way: float, sway: float) -> dict[str, float | str]:
     """One drive through one world, mapped."""
     named = Path(world) if world.endswith(".yaml") else world
-    load_world(named)
     episode = draw_episode(named, seed)
-    turning = Turning(kinova_jackal(), episode, seed, sway)
-    survey = CloudSurvey(turning.base_from_imu, episode.start.transform())
-    spent, turns, truth, wheels = 0.0, 0, Transform(), Transform()
-    for number, tick in enumerate(ways(turning, episode, way, seed)):
-        began = time.process_time()
-        survey.move(tick.stamp, tick.odom_from_base, tick.imu)
-        spent += time.process_time() - began
-        truth, wheels = tick.truth, episode.start.transform() @ tick.odom_from_base
-        if number % 2:
-            cloud = turning.turn()
-            began = time.process_time()
-            survey.add(cloud, turning.base_from_lidar)
-            spent += time.process_time() - began
-            turns += 1
-    began = time.process_time()
-    mapper = survey.mapper
-    mapper.finish()
-    spent += time.process_time() - began
-    off = truth.position - mapper.map_from_base.position
+    drive = mapped(episode, seed, way, sway)
+    mapper, turns = drive.survey.mapper, len(drive.passed)
+    found = np.array([pose.position for _, pose in mapper.trajectory()])
+    beside = np.linalg.norm(found - drive.passed, axis=1)
     points = cloud_of(mapper)
     apart = surfaces_apart(points, map_triangles(list(episode.bodies)))
-    end = float(np.linalg.norm(off))
     return {
         "world": world,
         "seed": seed,
-        "way_m": round(turning.way, 1),
+        "way_m": round(drive.way, 1),
         "turns": turns,
         "kept": len(mapper.keyframes),
         "loops": len(mapper.closed),
         "doubtful": mapper.doubtful,
-        "wheels_off_m": round(math.dist(wheels.position, truth.position), 3),
-        "off_m": round(end, 4),
-        "off_per_cent": round(100 * end / turning.way, 4),
-        "z_off_m": round(float(off[2]), 4),
+        "wheels_off_m": round(math.dist(drive.wheels.position, drive.passed[-1]), 3),
+        "off_m": round(float(beside[-1]), 4),
+        "off_per_cent": round(100 * float(beside[-1]) / drive.way, 4),
+        "way_off_mean_m": round(float(beside.mean()), 4),
+        "way_off_most_m": round(float(beside.max()), 4),
+        "z_off_m": round(float((found - drive.passed)[-1, 2]), 4),
         "points": len(points),
         "points_mean_m": round(float(apart.mean()), 4),
         "points_95_m": round(float(np.quantile(apart, 0.95)), 4),
-        "ms_per_turn": round(1000 * spent / turns, 1),
+        "ms_per_turn": round(1000 * drive.seconds / turns, 1),
     }
 
 
