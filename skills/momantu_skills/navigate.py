@@ -193,13 +193,14 @@ class Navigate(Skill):
         tolerance = (self.tolerance, self.angle_tolerance)
         surfaces = self.site.surfaces
         named = str(self.in_front_of)
+        moves = offers(self.localization, OwnMap)  # then names move with the map
         if named in surfaces:
-            base = vehicle.pose()
+            base, told = vehicle.pose(), surfaces[named]
             return trip.Destination(
-                lambda: before_surface(surfaces[named], working, base),
+                lambda: before_surface(surfaces[named] if moves else told, working, base),
                 tolerance,
                 side=self.side,
-                thing=lambda: surfaces[named].map_from_surface,
+                thing=(lambda: surfaces[named].map_from_surface) if moves else None,
             )
         target = self.within_reach_of
         if target is not None:
