@@ -116,3 +116,11 @@ def test_a_log_is_not_mapped_in_three_dimensions(log, tmp_path, capsys):
     assert main(arguments) == ExitCode.WRONG_INPUT
     assert "leave out --dimensions 3" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_map_is_not_extended_in_three_dimensions(tmp_path, capsys):
+    out = tmp_path / "out"
+    arguments = ["--world", "any", "--dimensions", "3", "--extend", str(tmp_path), "-o", str(out)]
+    assert main(["map", *arguments]) == 2
+    assert "--extend goes on with a map in two dimensions" in capsys.readouterr().err
+    assert not out.exists()
