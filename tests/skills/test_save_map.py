@@ -102,7 +102,7 @@ def test_a_site_file_reads_back_and_says_what_is_wrong(tmp_path: Path) -> None:
 
 def test_a_full_disk_leaves_the_map_that_was_there(tmp_path: Path, monkeypatch: Any) -> None:
     built = build(logged(driven(ROUND[:2], 0.5), 1), 0.05, lambda *_: False)
-    parts = built.plan, built.stamps, built.poses, built.report
+    parts = built.plan, built.stamps, built.poses, built.report, None
     results.write_folder(tmp_path / "map", *parts)
     before = (tmp_path / "map" / "map.pgm").read_bytes()
 

@@ -92,7 +92,7 @@ def make_map(
       momantu-bt map --log today.log --extend maps/office -o maps/office
       momantu-bt map show maps/rooms
       momantu-bt map compare maps/rooms maps/rooms_today -o difference.png
-      momantu-bt map --world four_rooms --robot kinova_jackal --dimensions 3 -o maps/rooms
+      momantu-bt map --world my_rooms.yaml --robot my_robot.yaml --dimensions 3 -o maps/rooms
     """
     if context.invoked_subcommand is not None:
         if any(given is not None for given in (out, log, world)):

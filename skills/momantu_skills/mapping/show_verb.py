@@ -41,7 +41,7 @@ def show(
     Examples:
       momantu-bt map show maps/office
       momantu-bt map show maps/office -o office.png --json office.json
-      momantu-bt map show warehouse.yaml
+      momantu-bt map show hall.yaml
     """
     check_picture(out)
     if output is not None:

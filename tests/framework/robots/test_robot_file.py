@@ -57,8 +57,12 @@ WRONG: list[tuple[str, str, str]] = [
     ("  arm_bend: {stiffness", "  arm_bnd: {stiffness", "no actuator or moving joint 'arm_bnd'"),
     ("floor_links: [base_link]", "floor_links: [wheel]", "there is no link 'wheel'"),
     ("    max_depth: 4.0", "    max_depth: 4.0\n    carrier: head", "no actuator 'head'"),
-    ("kind: camera", "kind: camra", ":11: 'camra' is not possible here; possible: camera, laser"),
-    ("    kind: camera\n", "", "sensors.camera needs a key 'kind'; possible: camera, laser"),
+    (
+        "kind: camera",
+        "kind: camra",
+        ":11: 'camra' is not possible here; possible: camera, imu,",
+    ),
+    ("    kind: camera\n", "", "sensors.camera needs a key 'kind'; possible: camera, imu, laser"),
     ("    frame: lens", "    fram: lens", "did you mean 'frame'\\? Keys: kind, frame, carrier"),
     ("  max_width: 8 cm", "  actuator: arm\n  max_width: 8 cm", "actuator of kind gripper 'arm'"),
     (

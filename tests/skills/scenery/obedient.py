@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
+from types import SimpleNamespace
 
 import numpy as np
 from momantu_skills.navigation.config import NavigationConfig
@@ -27,7 +28,7 @@ class Obedient:
     stuck: it is commanded but stands. arm: how far an arm reaches ahead of the outline, m.
     """
 
-    blind = 0.0
+    sight = SimpleNamespace(blind=0.0)
 
     def __init__(
         self, start: Pose2D, boxes: Boxes = (), arm: float = 0.0, limits: BaseLimits = LIMITS

@@ -26,6 +26,8 @@ SIDEWAYS = 0.5
 MISFIT = (0.012, 0.15)
 """Largest difference between an opening and the distance of the hulls, m, and as a share of the
 width."""
+UNFIT = "opening-does-not-fit"
+"""Code of the finding about such a difference."""
 SAMPLES = (0.3, 0.6, 1.0)
 """Shares of the widest opening at which the table is compared with the fingers."""
 LEVEL = math.radians(25)
@@ -208,7 +210,7 @@ def _widths(
         if abs(gap - width) > max(MISFIT[0], MISFIT[1] * width):
             yield FindingAtKeys(
                 Severity.WARNING,
-                "opening-does-not-fit",
+                UNFIT,
                 f"where `opening` says {width:.3f} m, the fingers' hulls are {gap:.3f} m apart",
                 "measure the table again: `momantu-bt robots setup` does",
                 ("end_effector", "opening") if effector.opening else ("end_effector",),

@@ -20,7 +20,7 @@ from momantu_skills.robot_setup.check.body import (
     check_looks,
     check_poses,
 )
-from momantu_skills.robot_setup.check.hand import check_hand, check_reach, check_stand_off
+from momantu_skills.robot_setup.check.hand import UNFIT, check_hand, check_reach, check_stand_off
 from momantu_skills.robot_setup.check.pads import check_pads
 from momantu_skills.robot_setup.check.sensors import check_sensors
 from momantu_skills.robot_setup.find.base import find_stand
@@ -52,7 +52,8 @@ def check_robot(description: RobotDescription) -> list[Finding]:
     if description.end_effector is not None:
         findings += check_hand(description, body)
     if model is not None and description.end_effector is not None:
-        findings += check_pads(model)
+        if all(finding.code != UNFIT for finding in findings):  # else the fingers are elsewhere
+            findings += check_pads(model)
         findings += check_reach(description, stand)
     return _located(description, findings)
 
