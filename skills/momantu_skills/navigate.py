@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from momantu_bt.activity import Activity
-from momantu_bt.claim import BaseAt, BaseNear, Claim
+from momantu_bt.claim import BaseAt, BaseNear, Claim, Holding
 from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import MAP, ODOM
@@ -20,6 +20,7 @@ from momantu_bt.symptom import Symptom
 from momantu_bt.world import Surface
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.confidence import estimate
 from momantu_skills.navigation.map.own import OwnMap
@@ -38,6 +39,7 @@ SURVEY = (0.05, 0.03)
 class Navigate(Skill):
     """Drive to a goal, around unknown obstacles, and stop there within tolerance.
 
+    It stops where the hand loses what it carries, and drivers then keep off where that may lie.
     Without a map poses lie in odom, and what nobody has seen counts as free: `PATH_BLOCKED` where
     what was seen on the way leaves none.
     The site's zones hold: the base keeps out of some, drives slowly in others, and prefers others.
@@ -70,6 +72,7 @@ class Navigate(Skill):
         "NO_PROGRESS": "the base got no nearer for too long",
         "NOT_LOCALIZED": "the robot is not sure enough where it is",
         "ARM_STUCK": "the arm that carries the camera is stretched out and does not fold",
+        "LOAD_LOST": "what the hand carried fell out of it on the way; the base stands",
     }
     uses: ClassVar = {"base", CAMERA_CARRIER}
     activities: ClassVar = {Activity.DRIVE: "+2 s"}
@@ -81,6 +84,7 @@ class Navigate(Skill):
         "NO_PROGRESS": {Symptom.WAY_BLOCKED, Symptom.NOT_LOCALIZED, Symptom.SLOW},
         "NOT_LOCALIZED": {Symptom.NOT_LOCALIZED},
         "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.SLOW},
+        "LOAD_LOST": {Symptom.NOT_HELD},
     }
     one_of: ClassVar = (("in_front_of", "goal", "within_reach_of"),)
 
@@ -110,10 +114,34 @@ class Navigate(Skill):
         )
         destination = self._going = self._destination(vehicle, robot.description.working)
         controller = mppi.Mppi(robot.description.base, config, self.random)
-        yield from trip.travel(vehicle, controller, destination, recovery=self.recovery)
+        travel = trip.travel(vehicle, controller, destination, recovery=self.recovery)
+        yield from self._carrying(vehicle, travel)
+
+    def _carrying(self, vehicle: Vehicle, travel: Run) -> Run:
+        """Travel, and stop where the hand loses what it carries: the base could drive onto it."""
+        load = self.planning_scene.held
+
+        def is_lost() -> bool:
+            return load is not None and self.planning_scene.held is None
+
+        yield from until(travel, is_lost)
+        if load is not None and is_lost():
+            yield from vehicle.stop("load lost")
+            here = vehicle.pose()
+            raise Failure(
+                "LOAD_LOST",
+                f"the {load.object.category} is no longer in the hand; the base stopped at "
+                f"({here.x:.2f}, {here.y:.2f}) in the map, so look around there",
+                at=[here.x, here.y, here.yaw],
+            )
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
-        """Claim that the base is at its goal or in reach; NOT_LOCALIZED denies the estimate."""
+        """Claim that the base is at its goal or in reach.
+
+        NOT_LOCALIZED denies the estimate, LOAD_LOST that the hand holds anything.
+        """
+        if failure is not None and failure.code == "LOAD_LOST":
+            return Holding(True)
         if failure is not None and failure.code == "NOT_LOCALIZED":
             return estimate(self.localization)
         if self._going is None or self._going.chosen is None:

@@ -10,10 +10,11 @@ import pytest
 from momantu_skills.navigate import Navigate
 from momantu_skills.navigation.localize.service import LocalizationService
 
-from momantu_bt.claim import BaseAt, BaseNear
+from momantu_bt.claim import BaseAt, BaseNear, Holding
 from momantu_bt.geometry import Pose, Pose2D, Transform, wrap_angle
-from momantu_bt.messages import BaseVelocity
+from momantu_bt.messages import BaseVelocity, DetectedObject
 from momantu_bt.running.told import Told
+from momantu_bt.service import HeldObject
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, small_robot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from tests.skills.scenery.flat import Flat, FlatSceneOf
@@ -367,3 +368,53 @@ def test_a_camera_that_nothing_turns_still_shows_what_the_laser_does_not(
     _arrived(drive(world, goal=Pose2D(0.0, 1.0, 0.0)), world, Pose2D(0.0, 1.0, 0.0))
     assert len(pictures) >= 2
     assert {actuator for _, actuator, _ in world.robot.commands} == {"base"}
+
+
+LOAD = HeldObject(
+    DetectedObject("can", Pose(Transform(), "odom", 0.0), (0.07, 0.07, 0.13), "cylinder", 1.0, 0.0),
+    Transform(),
+)
+
+
+def test_it_stops_where_the_hand_loses_its_load_and_keeps_off_where_that_may_lie(
+    flat: Flat, flat_scene: FlatSceneOf
+) -> None:
+    """Neither laser nor camera shows what lies on the floor here."""
+    world, goal = flat(Pose2D(-3.0, 1.0, 0.0)), Pose2D(0.0, 1.0, 0.0)
+    scene = flat_scene(world)
+    scene.held, least = LOAD, [math.inf]
+
+    def lose(session: Any, place: Any) -> None:
+        base = place.robot.truth
+        if scene.held is LOAD and base.x > -2.0:
+            scene.held = None
+            x, y = np.meshgrid(np.arange(0.9, 1.3, 0.05), np.arange(-0.2, 0.2, 0.05))
+            scene.low_things = base.apply(np.column_stack([x.ravel(), y.ravel()]))
+        if len(scene.low_things):
+            own = base.inverse().apply(scene.low_things)
+            least[0] = min(least[0], float(np.linalg.norm(own, axis=1).min()))
+
+    def go() -> SkillResult:
+        inputs = {"goal": goal}
+        services = {"localization": LocalizationService(), "planning_scene": scene}
+        return run_skill(
+            Navigate, world=world, services=services, inputs=inputs, max_time=90.0, on_tick=lose
+        )
+
+    result = go()
+    assert result.code == "LOAD_LOST", result.explain()
+    assert abs(world.robot.linear) < 0.02
+    assert world.robot.truth.x < -1.2
+    assert result.claim() == Holding(True)
+    world = flat(world.robot.truth)
+    _arrived(go(), world, goal)
+    assert least[0] > 0.25
+
+
+def test_a_load_that_is_kept_does_not_matter(flat: Flat, flat_scene: FlatSceneOf) -> None:
+    world, goal = flat(), Pose2D(0.0, 1.0, 0.0)
+    scene = flat_scene(world)
+    scene.held = LOAD
+    services = {"localization": LocalizationService(), "planning_scene": scene}
+    result = run_skill(Navigate, world=world, services=services, inputs={"goal": goal})
+    _arrived(result, world, goal)

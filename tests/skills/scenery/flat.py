@@ -17,6 +17,7 @@ from momantu_bt.messages import (
     frozen,
 )
 from momantu_bt.robot import RobotDescription
+from momantu_bt.service import HeldObject
 from momantu_bt.testing import (
     ScriptedRobot,
     ScriptedWorld,
@@ -134,7 +135,7 @@ class FlatScene:
     load: height of the lowest point and corners (n, 2) of something that sticks out, base frame.
     """
 
-    held = None
+    held: HeldObject | None = None
     last_contact = -math.inf
 
     def __init__(self, outline: Sequence[tuple[float, float]]) -> None:

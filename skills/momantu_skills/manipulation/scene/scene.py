@@ -28,6 +28,7 @@ from momantu_skills.manipulation.model.collision import (
 from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
 from momantu_skills.manipulation.scene import outreach
 from momantu_skills.manipulation.scene.columns import DOUBT, HALF_DIAGONAL, WALL, Columns
+from momantu_skills.manipulation.scene.dropped import dropped
 from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
 from momantu_skills.manipulation.scene.surroundings import (
     SeenSpace,
@@ -248,6 +249,19 @@ class Scene:
         posed = dict(zip(self.model.group.names, joints, strict=True))
         poses = self.model.link_poses(self.model.posture(posed, 0.0))
         return bool(self._mask.covers(points, poses).any())
+
+    def dropped(self, state: RobotState, held: HeldObject) -> Array:
+        """Points (n, 2) of the floor, odom, on which what was held may lie; none over a surface."""
+        pose = self.model.link_poses(self.model.configuration(state))
+        tip = pose[self.model.description.hand.frame]
+        corners = self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
+        there = corners.mean(axis=0)
+        odom = state.odom_from_base.apply(there)
+        for support in self._supports(state):
+            if support.height <= odom[2] and within(odom[None, :2], support.outline)[0]:
+                return np.empty((0, 2))
+        front = max(x for x, _ in self.model.description.footprint)
+        return dropped(state, there, max(held.object.size), front)
 
     def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:
         """Corners (n, 3) of the held object, in the tip's frame, m."""

@@ -57,8 +57,10 @@ class PlanningSceneService(Service):
 
     def update(self, robot: Robot, now: float) -> None:
         """Check again whether the object is still held, and weigh the empty hand."""
-        self._state = robot.state()
+        self._state, held = robot.state(), self.held
         self.holding.judge(self._state)
+        if held is not None and self.held is None:
+            self._fell(held)
         self.payload.update(robot, self._state)
 
     def published(self) -> Mapping[str, Any]:
@@ -87,7 +89,21 @@ class PlanningSceneService(Service):
 
     def released(self) -> None:
         """Report that the hand has just released the held object."""
+        held = self.held
         self.holding.release(self._state.stamp)
+        if held is not None:
+            self._fell(held)
+
+    def _fell(self, held: HeldObject) -> None:
+        """Suppose that what the hand no longer holds lies on the floor below, unless on a top."""
+        self.take_over_site()
+        odom_from_map = self.scene.odom_from_map
+        if odom_from_map is None:
+            return
+        flat = self.scene.dropped(self._state, held)
+        there = np.column_stack([flat, np.zeros(len(flat))])
+        there = odom_from_map.inverse().apply(there)[:, :2]
+        self.low_things = np.vstack([self.low_things, there])
 
     def observe(self, snapshot: Snapshot) -> None:
         """Add a depth picture of the surroundings.

@@ -29,8 +29,9 @@ class BodyScene(PlanningScene, Protocol):
 
     Columns are rows of x, y, lowest and highest point, and radius, base frame, m.
 
-    low_things: (n, 2) in the map, m: where pictures showed things below the laser's plane. A camera
-    that looks ahead does not see what lies near the base, so who drives next must be told of it.
+    low_things: (n, 2) in the map, m: where pictures showed things below the laser's plane, or where
+    what the hand has lost may lie. A camera that looks ahead does not see what lies near the base,
+    so who drives next must be told of it.
     """
 
     low_things: Array

@@ -69,6 +69,9 @@ class Lost(Vehicle):
         """Return the identity: all poses are in odom."""
         return Pose2D(0.0, 0.0, 0.0)
 
+    def _beware(self) -> None:
+        """Take over nothing: it is told in the map."""
+
     def show(self, path: Array) -> None:
         """Draw nothing: viewers show paths on the map."""
 

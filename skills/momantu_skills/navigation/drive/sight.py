@@ -32,7 +32,8 @@ class Sight:
 
     The laser is assumed to be fixed to the base.
 
-    blind: how near the last picture began to show the floor, m.
+    blind: how near the last picture began to show the floor, m. earlier: points (n, 2) of low
+    things, in the map, m, that the next scan brings into the costmap.
     """
 
     def __init__(
@@ -44,9 +45,9 @@ class Sight:
         shown: costmap.Costmap,
         earlier: Array,
     ) -> None:
-        """shown: the costmap. earlier: points (n, 2) of low things that it lacks, in the map, m."""
+        """shown: the costmap. earlier: what it lacks."""
         self._frames, self._robot, self._scene, self._config = skill.frames, robot, scene, config
-        self._costmap, self._earlier = shown, earlier
+        self._costmap, self.earlier = shown, earlier
         self.pictures = any(
             isinstance(sensor, CameraSensor) for sensor in robot.description.sensors.values()
         )
@@ -70,7 +71,7 @@ class Sight:
         rays = Rays.from_scan(scan, self._base_from_laser)
         self._hits = rays.points()
         body.look(self._robot.state(), self._hits)
-        if len(self._earlier):
+        if len(self.earlier):
             self._lay_earlier(pose, base_discs)
         self._costmap.see_laser(pose, rays)
         self._people.see(scan.stamp, odom_from_base, map_from_odom, rays)
@@ -94,7 +95,7 @@ class Sight:
 
     def _lay_earlier(self, pose: Pose2D, base_discs: Array) -> None:
         """Mark the low things that earlier pictures showed; none lies where the base stands."""
-        there, self._earlier = self._earlier, np.zeros((0, 2))
+        there, self.earlier = self.earlier, np.zeros((0, 2))
         own = pose.inverse().apply(there)
         off = np.linalg.norm(own[:, None] - base_discs[:, :2], axis=2)
         under = (off < base_discs[:, 2] + UNDER).any(axis=1)

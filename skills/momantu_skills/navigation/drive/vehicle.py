@@ -175,6 +175,8 @@ class Vehicle:
         before, held = self._posture, self._scene.held
         if before is not None and _moved_little(state.positions, before) and held is self._held:
             return
+        if held is None and self._held is not None:
+            self._beware()
         self._posture, self._held = state.positions, held
         self._body.follow(state)
         outline = np.asarray(self._scene.footprint(state))
@@ -184,6 +186,10 @@ class Vehicle:
         low = np.asarray(self._scene.footprint(state, self._low))
         if not _same(low, self._low_outline):
             self._low_outline, self.low_discs = low, footprint.discs(low)
+
+    def _beware(self) -> None:
+        """Take over where what the hand has just lost may lie."""
+        self.sight.earlier = self._scene.low_things
 
     def _gaze_goal(self) -> JointPositions | None:
         """Return where a head looks while driving; None for a camera on the arm or a fixed one."""
