@@ -11,7 +11,7 @@ import momantu_bt
 from momantu_bt.geometry import Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.site_file import Names
-from momantu_bt.world import World
+from momantu_bt.world import Site, World
 from momantu_skills.mapping import building, results
 from momantu_skills.mapping.building import FEWEST
 from momantu_skills.mapping.extending import Earlier, named
@@ -73,19 +73,8 @@ def explore(
         InputError: the robot cannot map in three dimensions.
         MomantuError: the run cannot begin; see `momantu_bt.run`.
     """
-    follower = _Follower(told)
+    follower = _Follower(told, earlier, spatial=spatial)
     replaces = earlier is not None and folder.resolve() == earlier.folder.resolve()
-
-    def watch(run: Any) -> Sequence[Any]:
-        follower.mapping = run.services.running["mapping"]
-        follower.site = run.context.body.site
-        if spatial:
-            follower.clouds = _with_clouds(run)
-        if earlier is not None:
-            follower.mapping.earlier = earlier
-            named(follower.site, earlier)
-        return [follower]
-
     report = momantu_bt.run(
         TREE,
         world=world,
@@ -95,24 +84,30 @@ def explore(
         values={"folder": str(folder), "replace": replaces, "go_on": earlier is not None},
         max_time=LONGEST,
         referee=False,
-        watch=watch,
+        watch=follower.watch,
         view_port=view,
     )
     mapping = follower.mapping
     why = "" if report.failure is None else f"{report.failure.code}: {report.failure.message}"
     why = mapping.unplaced or why or report.error or ""
-    about = None
-    if report.status == "SUCCESS":
-        about = results.read_report(folder)
-    spatially = (
-        None if follower.clouds is None else _save_spatial(follower, follower.clouds, folder)
-    )
-    if spatially is not None:
-        about = spatially
-    elif about is None and len(mapping.survey.used) >= FEWEST:
-        about = _save(mapping, folder)
+    about = _about(follower, folder, saved=report.status == "SUCCESS")
     begun = None if earlier is None else mapping.begun
     return Explored(report.status, why, about, report.sim_time_s, begun)
+
+
+def _about(follower: _Follower, folder: Path, *, saved: bool) -> dict[str, Any] | None:
+    """The report of the map, which is saved if the tree did not; None: there is too little of it.
+
+    saved: the tree has saved its plan.
+    """
+    spatially = _save_spatial(follower, folder)
+    if spatially is not None:
+        return spatially
+    if saved:
+        return results.read_report(folder)
+    if len(follower.mapping.survey.used) >= FEWEST:
+        return _save(follower.mapping, folder)
+    return None
 
 
 def _with_clouds(run: Any) -> CloudService:
@@ -123,12 +118,11 @@ def _with_clouds(run: Any) -> CloudService:
     return made
 
 
-def _save_spatial(
-    follower: _Follower, service: CloudService, folder: Path
-) -> dict[str, Any] | None:
-    """Write the map in three dimensions, in the place of the plan; None: it has too few turns."""
-    survey, site = service.survey, follower.site
-    if survey is None or len(survey.mapper.keyframes) < finishing.FEWEST:
+def _save_spatial(follower: _Follower, folder: Path) -> dict[str, Any] | None:
+    """Write the map in three dimensions, in the place of the plan; None: none, or too few turns."""
+    service, site = follower.clouds, follower.site
+    survey = None if service is None else service.survey
+    if service is None or survey is None or len(survey.mapper.keyframes) < finishing.FEWEST:
         return None
     stands = follower.mapping.stands
     built = finishing.built_of(survey, RESOLUTION, service.band, service.height, stands)
@@ -149,13 +143,27 @@ def _save(mapping: Mapping, folder: Path) -> dict[str, Any]:
 
 
 class _Follower:
-    """Watches a run."""
+    """Watches a run, and prepares it; see `explore` for its arguments."""
 
-    def __init__(self, told: Callable[[float, Mapping], None]) -> None:
-        self._told = told
-        self.mapping: Mapping
+    mapping: Mapping
+    site: Site
+
+    def __init__(
+        self, told: Callable[[float, Mapping], None], earlier: Earlier | None, *, spatial: bool
+    ) -> None:
+        self._told, self._earlier, self._spatial = told, earlier, spatial
         self.clouds: CloudService | None = None
-        self.site: Any
+
+    def watch(self, run: Any) -> Sequence[Any]:
+        """Take hold of the run's mapping before it begins."""
+        self.mapping = run.services.running["mapping"]
+        self.site = run.context.body.site
+        if self._spatial:
+            self.clouds = _with_clouds(run)
+        if self._earlier is not None:
+            self.mapping.earlier = self._earlier
+            named(self.site, self._earlier)
+        return [self]
 
     def ticked(self, run: Any) -> None:
         """Tell of the tick."""
