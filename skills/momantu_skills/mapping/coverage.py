@@ -61,9 +61,7 @@ def left(grid: GridMap, looks: Sequence[Pose2D], fov: float) -> Mask:
 
 def outlines(grid: GridMap) -> Mask:
     """(rows, columns): what is occupied beside what is free."""
-    free = np.pad(grid.cells == FREE, 1)
-    beside = free[:-2, 1:-1] | free[2:, 1:-1] | free[1:-1, :-2] | free[1:-1, 2:]
-    return np.asarray((grid.cells == OCCUPIED) & beside)
+    return np.asarray((grid.cells == OCCUPIED) & grid.beside(FREE))
 
 
 def best_view(
@@ -81,8 +79,7 @@ def best_view(
     )
     best, found = 0.0, None
     for row, column in zip(rows[first], columns[first], strict=True):
-        x = grid.origin[0] + (column + 0.5) * grid.resolution
-        y = grid.origin[1] + (row + 0.5) * grid.resolution
+        x, y = grid.centre(row, column)
         if any(math.hypot(x - place.x, y - place.y) < APART for place in done):
             continue
         around = in_sight(grid, remaining, x, y)

@@ -96,7 +96,7 @@ def outlook(
     seen = np.zeros(grid.cells.shape, dtype=np.bool_)
     found = []
     for row, column in _squares(grid):
-        x, y = _centre(grid, row, column)
+        x, y = grid.centre(row, column)
         if any(math.hypot(x - a, y - b) < SAME for a, b in done):
             continue
         at = _view(grid.cells, views, row, column, NEAR / grid.resolution, float(UNREACHED))
@@ -104,7 +104,7 @@ def outlook(
             continue
         gain = gain_at(grid, *at, seen)
         if gain >= LEAST_GAIN:
-            vx, vy = _centre(grid, *at)
+            vx, vy = grid.centre(*at)
             yaw = math.atan2(y - vy, x - vx) if at != (row, column) else 0.0
             found.append(Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(cost[at])))
     found.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
@@ -126,9 +126,7 @@ def gain_at(grid: GridMap, row: int, column: int, seen: NDArray[np.bool_] | None
 def _squares(grid: GridMap) -> list[tuple[int, int]]:
     """One frontier cell of each square that has enough of them: the one nearest to their mean."""
     cells = grid.cells
-    unknown = np.pad(cells == UNKNOWN, 1)
-    beside = unknown[:-2, 1:-1] | unknown[2:, 1:-1] | unknown[1:-1, :-2] | unknown[1:-1, 2:]
-    rows, columns = np.nonzero((cells == FREE) & beside)
+    rows, columns = np.nonzero((cells == FREE) & grid.beside(UNKNOWN))
     edge = round(APART / grid.resolution)
     square = (rows // edge) * (cells.shape[1] // edge + 1) + columns // edge
     chosen = []
@@ -140,11 +138,6 @@ def _squares(grid: GridMap) -> list[tuple[int, int]]:
         nearest = int(np.argmin((r - r.mean()) ** 2 + (c - c.mean()) ** 2))
         chosen.append((int(r[nearest]), int(c[nearest])))
     return chosen
-
-
-def _centre(grid: GridMap, row: int, column: int) -> tuple[float, float]:
-    x, y = grid.origin
-    return x + (column + 0.5) * grid.resolution, y + (row + 0.5) * grid.resolution
 
 
 @numba.njit(cache=True)

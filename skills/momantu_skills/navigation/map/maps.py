@@ -50,6 +50,17 @@ class GridMap:
             math.floor((x - self.origin[0]) / self.resolution),
         )
 
+    def centre(self, row: int, column: int) -> tuple[float, float]:
+        """Map coordinates (x, y) of a cell's centre, m."""
+        x, y = self.origin
+        return x + (column + 0.5) * self.resolution, y + (row + 0.5) * self.resolution
+
+    def beside(self, value: int) -> NDArray[np.bool_]:
+        """The cells (rows, columns) that share an edge with one of this value."""
+        there = np.pad(self.cells == value, 1)
+        sides = there[:-2, 1:-1] | there[2:, 1:-1] | there[1:-1, :-2] | there[1:-1, 2:]
+        return np.asarray(sides)
+
     def contains(self, x: float, y: float) -> bool:
         """Whether map coordinates lie on the grid."""
         row, column = self.index(x, y)
