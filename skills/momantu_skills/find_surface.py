@@ -13,6 +13,7 @@ import numpy as np
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, PlaneAt
 from momantu_bt.descriptions.tunables import configured
+from momantu_bt.detector import View
 from momantu_bt.failure import FailureValue
 from momantu_bt.frames import MAP, ODOM
 from momantu_bt.geometry import Array, Pose, Pose2D
@@ -119,7 +120,7 @@ class FindSurface(Skill):
     def __init__(self) -> None:
         """Start without views."""
         super().__init__()
-        self._points: list[Array] = []
+        self._views: list[View] = []
         self._from: list[Pose2D] = []
         self._seen: tuple[Seen, ...] = ()
 
@@ -183,10 +184,7 @@ class FindSurface(Skill):
         return False
 
     def _look(self, robot: Robot, surface: Surface) -> Generator[str | Compute, Any, None]:
-        """Take pictures of the surroundings of the surface's place, from the middle outwards.
-
-        What they show is kept in the map: odometry drifts on the way from one place to the next.
-        """
+        """Take pictures of the surroundings of the surface's place, from the middle outwards."""
         middle = (self.frames.lookup(ODOM, MAP)).apply(
             surface.map_from_surface.transform(surface.height).position
         )
@@ -203,8 +201,7 @@ class FindSurface(Skill):
             point[2] = middle[2]
             snapshot = yield from surveys.glance(self, robot, self.planning_scene, point)
             if snapshot is not None:
-                seen = pictures.see(snapshot, region, self.planning_scene)
-                self._points.append(self.frames.lookup(MAP, ODOM).apply(seen.points))
+                self._views.append(pictures.see(snapshot, region, self.planning_scene))
 
     def _region(self, middle: Array, surface: Surface) -> regions.Region:
         around = regions.disc(middle[:2], FARTHEST + math.hypot(*surface.size) / 2)
@@ -212,12 +209,14 @@ class FindSurface(Skill):
         return regions.Region(around, low, high)
 
     def _judged(self, costmap: costmaps.Costmap, surface: Surface) -> tuple[Seen, ...]:
-        """All level patches that the pictures show around the place, in the map."""
-        if not self._points:
+        """All level patches that the views show around the place, in the map."""
+        if not self._views:
             return ()
         low = surface.height - regions.HEIGHT_ERROR
         high = surface.height + regions.HEIGHT_ERROR
-        found = tops.tops_among(np.concatenate(self._points), low, high)
+        map_from_odom = self.frames.lookup(MAP, ODOM)
+        points = map_from_odom.apply(np.concatenate([view.points for view in self._views]))
+        found = tops.tops_among(points, low, high)
         return tuple(Seen(top, self._why_not(top, costmap, surface)) for top in found)
 
     def _why_not(self, top: tops.Top, costmap: costmaps.Costmap, surface: Surface) -> str:
