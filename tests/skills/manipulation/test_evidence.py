@@ -114,6 +114,31 @@ def test_a_hand_that_is_pushed_up_says_little() -> None:
     assert abs(of_weight(Weight(-8.0, 0.25, 0.1), raised=False).odds) < SURE
 
 
+@given(
+    st.floats(0.3, 15.0),
+    st.floats(8.0, 100.0),
+    st.floats(0.05, 0.4),
+    st.booleans(),
+    st.floats(0, 6),
+)
+def test_a_hand_that_is_pushed_aside_leans_and_its_weight_is_no_proof(
+    weight: float, push: float, sigma: float, raised: bool, way: float
+) -> None:
+    """What hangs in a hand pulls straight down; jammed fingers that lean may show some weight."""
+    aside = (push * math.cos(way), push * math.sin(way))
+    found = of_weight(Weight(weight, 0.08, sigma, aside), raised=raised)
+    pressing = of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG)
+    assert weighed([pressing, found]) is Grip.UNKNOWN
+    assert "pushed aside" in found.text
+
+
+@given(st.floats(0.6, 15.0), st.floats(0.0, 2.0), st.booleans())
+def test_what_pulls_straight_down_is_held(weight: float, aside: float, raised: bool) -> None:
+    """It may swing a little."""
+    found = of_weight(Weight(weight, 0.08, 0.07, (aside, 0.0)), raised=raised)
+    assert weighed([of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG), found]) is Grip.HELD
+
+
 def test_a_weight_is_as_sure_as_its_sensor() -> None:
     vague, sure = (of_weight(Weight(0.0, 0.25, s), raised=True).odds for s in (0.6, 0.1))
     assert abs(vague) < abs(sure)
