@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.hand.between_pads import View
 from momantu_skills.manipulation.hand.evidence import (
+    DRAG,
     SURE,
     Evidence,
     Grip,
@@ -35,7 +36,7 @@ NOTHING_SEEN = View(0, 0.0)
         (PRESSING, Weight(3.9, 0.25, 0.1), Grip.HELD),
         (PRESSING, Weight(3.9, 0.25, 0.6), Grip.HELD),
         (FREE, Weight(0.1, 0.25, 0.1), Grip.EMPTY),
-        (PRESSING, Weight(0.6, 0.08, 0.06), Grip.HELD),
+        (PRESSING, Weight(0.6, 0.08, 0.06), Grip.UNKNOWN),  # friction may drag the hand down
         (PRESSING, Weight(0.0, 0.25, 0.1), Grip.UNKNOWN),  # jammed, or what is held stands
         (FREE, Weight(3.9, 0.25, 0.1), Grip.UNKNOWN),
         (Fingers(0.07, 3.0), None, Grip.UNKNOWN),
@@ -134,9 +135,13 @@ def test_a_hand_that_is_pushed_aside_leans_and_its_weight_is_no_proof(
 
 @given(st.floats(0.6, 15.0), st.floats(0.0, 2.0), st.booleans())
 def test_what_pulls_straight_down_is_held(weight: float, aside: float, raised: bool) -> None:
-    """It may swing a little."""
+    """It may swing a little. Friction may drag an empty hand down as light things do."""
     found = of_weight(Weight(weight, 0.08, 0.07, (aside, 0.0)), raised=raised)
-    assert weighed([of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG), found]) is Grip.HELD
+    grip = weighed([of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG), found])
+    if raised or weight > DRAG + 0.5:
+        assert grip is Grip.HELD
+    elif weight < DRAG - 0.5:
+        assert grip is Grip.UNKNOWN
 
 
 def test_a_weight_is_as_sure_as_its_sensor() -> None:

@@ -34,8 +34,11 @@ SEEN, THROUGH = (0.14, 0.016), (0.001, 0.12)
 LEANING = (0.19, 0.08)
 """Share of states in which something under the hand carries what it holds, or pushes at the hand if
 it is empty."""
-DRAGGED = 0.15
-"""Share of the empty hands that lean on something which it pulls down, by friction."""
+DRAWN = 0.15
+"""Share of the empty hands that lean on something which draws them down too."""
+DRAGGED, DRAG = 0.03, 1.5
+"""Share of empty hands that friction drags straight down, by up to DRAG, N. It is a hundredth among
+those states, and counts threefold: light things are then not believed before the hand is raised."""
 SWAY = 1.0
 """Standard deviation of the load aside, per axis, of what hangs in the hand while the arm is at
 rest, N: 1.5 N at the most among ten things held; hands that lean show 2 to 100 N."""
@@ -46,7 +49,7 @@ NOISE = 1.0 / math.sqrt(RECENT)
 LIGHTEST, HEAVIEST = 0.3, 20.0
 """Range of the weights that are expected in a hand, N, each factor of two as likely."""
 RAISED = 0.02
-"""The share of LEANING that is left in a hand that was raised since its fingers moved."""
+"""What is left of LEANING and DRAGGED in a hand that was raised since its fingers moved."""
 SOME = 25
 """Points between the pads that prove something: 1 cm2 at 0.6 m."""
 EMPTY_FROM = 0.5
@@ -120,13 +123,14 @@ def of_weight(measured: Weight, *, raised: bool) -> Evidence:
     weight = min(max(weight, -HEAVIEST), HEAVIEST)
     nothing = math.exp(-0.5 * (weight / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
     below = np.diff(ndtr((weight - EDGES) / sigma)) * -1.0  # probability of each interval
-    full, in_part, hung = (float(below @ density) for density in (FULL, IN_PART, HUNG))
+    full, in_part, hung, dragged = (float(below @ each) for each in (FULL, IN_PART, HUNG, RUBBED))
     pushed = float(ndtr(-weight / sigma)) / HEAVIEST
     held, empty = (share * (RAISED if raised else 1.0) for share in LEANING)
     shown = (nothing + in_part + pushed) / 3
     with_it = (1.0 - held) * full * straight + held * shown * leaning
-    leant = (1.0 - DRAGGED) * pushed + DRAGGED * in_part
-    free = (1.0 - empty - HANGING) * nothing + HANGING * hung
+    leant = (1.0 - DRAWN) * pushed + DRAWN * in_part
+    rubbed = DRAGGED * (RAISED if raised else 1.0)
+    free = (1.0 - empty - rubbed - HANGING) * nothing + HANGING * hung + rubbed * dragged
     without = free * straight + empty * leant * leaning
     return Evidence("weight", _odds(with_it, without), text)
 
@@ -153,6 +157,8 @@ IN_PART = (1.0 / np.maximum(_MIDDLES, LIGHTEST) - 1.0 / HEAVIEST) / _SPAN
 """The same if something carries a part of it, a share that is uniform."""
 HUNG = np.full(len(_MIDDLES), 1.0 / HEAVIEST)
 """The same of what hangs on an empty hand."""
+RUBBED = np.where(_MIDDLES < DRAG, 1.0 / DRAG, 0.0)
+"""The same of what friction drags an empty hand down with."""
 
 
 def _odds(held: float, empty: float) -> float:
