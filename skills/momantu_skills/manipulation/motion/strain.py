@@ -16,9 +16,10 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_bt.messages import JointTrajectory
+from momantu_skills.manipulation.config import PlanningConfig
 
-SLOW = 0.15
-"""Speed up to which a motion is slow, rad/s or m/s."""
+SLOW = 1.5 * PlanningConfig.careful_speed
+"""Speed up to which a motion is slow, rad/s or m/s: a careful one swings a little past its speed."""
 SHARE = 0.3
 """Rise of an effort that counts, as a share of the joint's limit."""
 RECENT = 10
