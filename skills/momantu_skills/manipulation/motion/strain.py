@@ -19,7 +19,7 @@ from momantu_bt.messages import JointTrajectory
 from momantu_skills.manipulation.config import PlanningConfig
 
 SLOW = 1.5 * PlanningConfig.careful_speed
-"""Speed up to which a motion is slow, rad/s or m/s: a careful one swings a little past its speed."""
+"""Speed up to which a motion is slow, rad/s or m/s: careful ones swing a little past theirs."""
 SHARE = 0.3
 """Rise of an effort that counts, as a share of the joint's limit."""
 RECENT = 10
