@@ -2,7 +2,7 @@
 
     python benchmarks/things.py --seeds 0:20                    # all of them, in four_rooms
     python benchmarks/things.py lying_bottle mug_handle --seeds 0:20 --robot kinova_jackal
-    python benchmarks/things.py mug_handle --write              # only write its world, and say the command
+    python benchmarks/things.py mug_handle --write     # write its world, and say how to run it
 
 Each world is four_rooms with another item, what the robot is told of it, the detector `learned`,
 and, for a mug, the part by which it is to be held. Each bench goes on where it was stopped.
@@ -38,7 +38,7 @@ HEAD = (
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """What is brought. diameter, height: mm. services: tunables of the site, beside the detector."""
+    """What is brought. diameter, height: mm. services: tunables beside the detector."""
 
     kind: str
     diameter: int

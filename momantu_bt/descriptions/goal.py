@@ -34,8 +34,8 @@ _Name: TypeAlias = Annotated[str, Field(pattern=f"^{_NAME}$", max_length=60)]
 class GoalDemand(BaseModel):
     """An object on a surface, optionally within `distance` of a tag or body.
 
-    It is written as a mapping, or in short as `can on table_b beside tag`. lying: it is to lie on its
-    side, with its axis level within `tilt`, as in `bottle lying on table_b`; else it is to stand.
+    It is written as a mapping, or in short as `can on table_b beside tag`. lying: it is to lie on
+    its side, its axis level within `tilt`, as in `bottle lying on table_b`; else it is to stand.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)

@@ -127,8 +127,9 @@ class _Fingers(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Floor:
-    """The surface below a lying object: its upward normal (3,), and points (n, 3) of it around the
-    object, all in the object's frame, m.
+    """The surface below a lying object, in the object's frame.
+
+    up: its normal (3,). points: (n, 3) of it around the object, m.
     """
 
     up: Array

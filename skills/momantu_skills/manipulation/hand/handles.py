@@ -66,7 +66,9 @@ class Handle:
         """Corners (8, 3) of a box around it in the object's frame, m. radius: of the body."""
         ends = product((radius, self.outer), (-ASIDE / 2, ASIDE / 2), (self.low, self.high))
         c, s = math.cos(self.bearing), math.sin(self.bearing)
-        return np.array(list(ends)) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return np.asarray(
+            np.array(list(ends)) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        )
 
 
 def seen_handle(points: Array, thing: DetectedObject) -> Handle | None:

@@ -32,8 +32,8 @@ DROP = 0.006
 """Height above the measured surface at which a hand without force sensor releases, m: such a fall
 topples nothing, and a surface that is this much higher is not pressed hard."""
 ROLLS = (0.0, math.radians(35), -math.radians(35))
-"""How far a lying object may be rolled about its axis before it is set down, rad: it lies alike, and
-the hand comes down another way."""
+"""How far a lying object may be rolled about its axis before it is set down, rad: it lies alike,
+and the hand comes down another way."""
 ROLL_PENALTY = 1.0
 """Cost of that, s: the hand comes nearer to the surface."""
 SPOT_PENALTY = 0.5

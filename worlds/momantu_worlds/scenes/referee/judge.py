@@ -73,10 +73,10 @@ class ClaimJudge:
         map_from_odom = self._truth.base().transform() @ odom_from_base.inverse()
         match sentence:
             case say.ObjectAt(asked, pose, tolerance):
-                there = map_from_odom @ pose
+                rest = map_from_odom @ pose
                 return any(
-                    _apart(thing.centre, there.position) <= tolerance
-                    for thing in self._resting(there)
+                    _apart(thing.centre, rest.position) <= tolerance
+                    for thing in self._resting(rest)
                     if _meant(asked, thing)
                 )
             case say.ObjectOn(asked, surface):
@@ -108,10 +108,10 @@ class ClaimJudge:
             case say.GripperOpen(width):
                 return self._opening() >= width
             case say.SetDown(pose, tolerance):
-                there = map_from_odom @ pose
+                spot = map_from_odom @ pose
                 return any(
-                    _apart(t.centre, there.position) <= tolerance and not self._gripped(t)
-                    for t in self._resting(there)
+                    _apart(t.centre, spot.position) <= tolerance and not self._gripped(t)
+                    for t in self._resting(spot)
                 )
             case say.JointsAt(names, positions, tolerance):
                 pairs = zip(names, positions, strict=True)

@@ -1,7 +1,8 @@
 """The referee: whether the goal is met, by ground truth; it changes nothing.
 
-It observes after every tick. Criteria for the end (upright or lying, on the top, beside the marker, still,
-touched by nothing else, gripper away) are checked at the last tick, for each demand: see `demand`.
+It observes after every tick. Criteria for the end (upright or lying, on the top, beside the marker,
+still, touched by nothing else, gripper away) are checked at the last tick, for each demand: see
+`demand`.
 Criteria for the whole run (no hard bump, no other object pushed or toppled) use the worst tick so
 far, and the strictest of the demands. Dangerous events are reported in addition, whether or not the
 goal forbids them: see `incidents`.
