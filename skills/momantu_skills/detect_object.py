@@ -22,7 +22,7 @@ with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
-    from momantu_skills.perception.objects import config, matching
+    from momantu_skills.perception.objects import config, lying, matching
 
 
 LOOKS = 3
@@ -118,7 +118,10 @@ class DetectObject(Skill):
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(pictures.see(snapshot, region, self.planning_scene))
         low, high = region.support_heights
-        return finder.detect(self._views, low, high, self.object)
+        found = finder.detect(self._views, low, high, self.object)
+        if found is None:
+            return None
+        return lying.remeasured(found, self._views, low, high, self.object, finder.accepted)
 
     def _corners(self) -> Array:
         surface = self.site.surfaces.get(self.on)
