@@ -21,6 +21,10 @@ TILTS = (0.0, math.radians(15), math.radians(30), math.radians(50))
 """Angles of the fingers below the horizontal, rad."""
 HEIGHTS = (0.5, 0.62, 0.78)
 """Heights of the grasp, as shares of the object's height."""
+LYING_HEIGHTS = (0.5, 0.38, 0.62)
+"""The same of an object that lies."""
+BOTTLE_HEIGHTS = (0.4, 0.3, 0.5)
+"""The same of a bottle that lies: its body is heavier than its neck, and its shoulder slips out."""
 TOP_TURNS = 12
 """Number of finger directions in a grasp from above."""
 SLACK = 0.004
@@ -214,7 +218,8 @@ def _from_side(
     farthest: float,
 ) -> Iterator[Grasp]:
     surface = surface_of(thing)
-    for tilt, share in product(TILTS, HEIGHTS):
+    shares = _shares(thing, fingers)
+    for tilt, share in product(TILTS, shares):
         x = np.array(
             [
                 math.cos(tilt) * math.cos(direction),
@@ -236,9 +241,16 @@ def _from_side(
         held = back if fingers.seat is None else fingers.seat.best(back, farthest)
         tilting = TILT_PENALTY if held == back else EDGE_PENALTY
         back = held
-        penalty = tilting * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
+        penalty = tilting * tilt + SWING_PENALTY * abs(share - shares[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
+
+
+def _shares(thing: DetectedObject, fingers: _Fingers) -> tuple[float, ...]:
+    """Heights at which an object is held, as shares of its own, the best first."""
+    if fingers.floor is None:
+        return HEIGHTS
+    return BOTTLE_HEIGHTS if thing.category == "bottle" else LYING_HEIGHTS
 
 
 def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share: float) -> float:
