@@ -131,7 +131,7 @@ def _row(name: str, robot: str, found: Mapping[str, Any]) -> tuple[str, ...]:
     """One line: how often, how sure, how long, what was claimed wrongly, where it failed."""
     low, high = found["interval"]
     median = found["sim_time_s"]["median"]
-    failed = [seed for seeds in found["failures"].values() for seed in seeds]
+    failed = [row["seed"] for row in found["rows"] if not row["success"]]
     return (
         name,
         robot,

@@ -53,7 +53,9 @@ def options_for(arm: Arm, thing: DetectedObject, by: Hold = "any") -> Options:
     Raises:
         Failure: NO_GRASP if there are none.
     """
-    handle = seen_handle(arm.scene.points, thing) if _may_have_handle(thing, by) else None
+    handle = None
+    if _may_have_handle(thing, by):
+        handle = seen_handle(arm.scene.points_since(_still(arm)), thing)
     found: list[Grasp] = []
     missing: dict[str, str] = {}
     if by in ("any", "body"):
@@ -72,6 +74,11 @@ def options_for(arm: Arm, thing: DetectedObject, by: Hold = "any") -> Options:
     if not found:
         raise _none(arm, thing, by, missing)
     return Options(found, handle, missing)
+
+
+def _still(arm: Arm) -> float:
+    """Since when nothing was touched, nor the pictures too old for a grasp, s."""
+    return max(arm.service.last_contact, arm.state.stamp - arm.hand.old_pose)
 
 
 def _may_have_handle(thing: DetectedObject, by: Hold) -> bool:
