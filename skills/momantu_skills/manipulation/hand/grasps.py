@@ -162,7 +162,8 @@ def grasps_for(
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
-    fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
+    ways = approaches(thing) if floor is None else _across(thing, floor)
+    fitting = [a for a in ways if a[0] <= hand.max_width - opening]
     is_box = thing.shape == "box"
     seat = None
     if fitting and closing is not None and not is_box:
@@ -170,8 +171,6 @@ def grasps_for(
     for width, direction, top in fitting:
         closed = closing(width) if closing is not None and (is_box or floor) else ()
         both = _Fingers(fingers, closed, seat, floor)
-        if top and floor is not None:
-            continue
         if top:
             found += _from_above(thing, hand, both, direction, width)
         else:
@@ -208,6 +207,15 @@ def approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
             yield width, i * math.pi / 2, True
 
 
+def _across(thing: DetectedObject, floor: Floor) -> Iterator[tuple[float, float, bool]]:
+    """The same for an object that lies: straight down, and beside that as far as DOWN."""
+    down = math.atan2(-float(floor.up[1]), -float(floor.up[0]))
+    for off in range(-AZIMUTHS // 4, AZIMUTHS // 4 + 1):
+        turn = 2 * math.pi * off / AZIMUTHS
+        if -math.cos(turn) <= DOWN:
+            yield max(thing.size[:2]), down + turn, False
+
+
 def _from_side(
     thing: DetectedObject,
     hand: EndEffector,
@@ -228,8 +236,6 @@ def _from_side(
             ]
         )
         y = np.array([-math.sin(direction), math.cos(direction), 0.0])
-        if fingers.floor is not None and float(fingers.floor.up @ x) > DOWN:
-            continue
         rotation = np.stack([x, y, np.cross(x, y)], axis=1)
         centre = np.array([0.0, 0.0, (share - 0.5) * thing.size[2]])
         local = (surface - centre) @ rotation
