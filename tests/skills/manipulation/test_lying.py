@@ -220,3 +220,13 @@ def test_the_nearest_axis_is_made_upright(yaw: float) -> None:
     assert levelled(turn)[2, 2] == pytest.approx(1.0)
     head = Transform.from_rpy((0.0, 0.0, 0.0), (math.pi - 0.05, 0.0, yaw)).rotation
     assert levelled(head)[2, 2] == pytest.approx(-1.0)
+
+
+def test_a_part_that_is_seen_does_not_move_the_whole() -> None:
+    thing = lying(0.4)
+    pose = thing.pose.transform
+    seen = upper_side(pose, thing.size)
+    part = seen[pose.inverse().apply(seen)[:, 2] > -0.03]
+    found = beside(part, pose, thing, TABLE)
+    assert found is not None
+    assert np.linalg.norm(found.position - pose.position) < 0.012

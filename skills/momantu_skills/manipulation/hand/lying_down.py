@@ -20,8 +20,6 @@ FAR = 0.012
 """Distance from the side beyond which a point counts no more, m: a bottle's neck is narrower."""
 MISFIT = 0.006
 """Largest mean distance from the side, m."""
-WHOLE = 0.6
-"""Share of the length that must be seen if the picture is to tell where the ends are."""
 ALONE = 0.7
 """Least share of the points around it that are its own."""
 AROUND = 0.03
@@ -76,6 +74,10 @@ def at(points: Array, pose: Transform, thing: DetectedObject, support: float) ->
 
 
 def _middle(length: Array, half: float) -> float:
-    """How far the middle is along the axis, m, where enough is seen to tell; else 0."""
+    """How far the middle is along the axis, m: no farther than what is seen demands.
+
+    A part that is seen may lie anywhere along the object. length: (n,) of its points, m.
+    """
     low, high = np.quantile(length, (0.02, 0.98)).tolist()
-    return (low + high) / 2 if high - low > WHOLE * 2 * half else 0.0
+    least, most = high - half, low + half
+    return (low + high) / 2 if least > most else float(np.clip(0.0, least, most))
