@@ -22,7 +22,8 @@ from momantu_bt.tags import USUAL_FAMILY
 class ObjectAt:
     """An object of this class stands with its box's centre within `tolerance` m of the pose.
 
-    asked: its category, and the sizes that were asked for.
+    Where the pose's z axis is more level than upright, the object lies along it. asked: its
+    category, and the sizes that were asked for.
     """
 
     asked: ObjectClass
@@ -132,9 +133,9 @@ class GripperOpen:
 
 @dataclass(frozen=True, slots=True)
 class SetDown:
-    """A loose object stands upright there, and not between the fingers.
+    """A loose object stands upright there, or lies as the pose does, and not between the fingers.
 
-    odom_from_object: the centre of its box, within `tolerance` m.
+    odom_from_object: the centre of its box, within `tolerance` m; its z axis is the object's.
     """
 
     odom_from_object: Transform

@@ -22,8 +22,9 @@ from momantu_bt.descriptions.quantities import Angle, Force, Size, Time
 from momantu_bt.descriptions.wording import said
 
 _NAME = r"[a-z][a-z0-9_]*"
-_WORDS = re.compile(rf"\s*({_NAME})\s+on\s+({_NAME})(?:\s+beside\s+({_NAME}))?\s*")
+_WORDS = re.compile(rf"\s*({_NAME})(\s+lying)?\s+on\s+({_NAME})(?:\s+beside\s+({_NAME}))?\s*")
 EXAMPLE = "can on table_b beside tag"
+EXAMPLE_LYING = "bottle lying on table_b"
 MOST = 50
 """Largest number of demands in a goal."""
 
@@ -33,7 +34,8 @@ _Name: TypeAlias = Annotated[str, Field(pattern=f"^{_NAME}$", max_length=60)]
 class GoalDemand(BaseModel):
     """An object on a surface, optionally within `distance` of a tag or body.
 
-    It is written as a mapping, or in short as `can on table_b beside tag`.
+    It is written as a mapping, or in short as `can on table_b beside tag`. lying: it is to lie on
+    its side, its axis level within `tilt`, as in `bottle lying on table_b`; else it is to stand.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
@@ -41,6 +43,7 @@ class GoalDemand(BaseModel):
     item: _Name
     on: _Name
     beside: _Name | None = None
+    lying: bool = False
     tilt: Angle = math.radians(5)
     distance: Size = 0.4
     still: Time = 1.0
@@ -57,14 +60,16 @@ class GoalDemand(BaseModel):
         words = _WORDS.fullmatch(value)
         if words is None:
             raise ValueError(
-                f"expected OBJECT on SURFACE or OBJECT on SURFACE beside TAG, such as {EXAMPLE!r}, "
-                f"found {value!r}"
+                f"expected OBJECT on SURFACE or OBJECT on SURFACE beside TAG, such as {EXAMPLE!r} "
+                f"or {EXAMPLE_LYING!r}, found {value!r}"
             )
-        return dict(zip(("item", "on", "beside"), words.groups(), strict=True))
+        item, lying, on, beside = words.groups()
+        return {"item": item, "on": on, "beside": beside, "lying": lying is not None}
 
     def __str__(self) -> str:
         beside = "" if self.beside is None else f" beside {self.beside}"
-        return f"{self.item} on {self.on}{beside}"
+        lying = " lying" if self.lying else ""
+        return f"{self.item}{lying} on {self.on}{beside}"
 
 
 def _each_once(demands: tuple[GoalDemand, ...]) -> tuple[GoalDemand, ...]:

@@ -22,11 +22,13 @@ with lazily():
     from momantu_skills.gaze import surveys
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
-    from momantu_skills.perception.objects import config, matching
+    from momantu_skills.perception.objects import config, lying, matching
 
 
 LOOKS = 3
 """Fewest views of a surface before an object is reported as not found."""
+UPRIGHT = 0.999
+"""Share of an axis along the vertical above which it is upright."""
 EXACT = 0.02
 """Position error of a found object that still allows a grasp, m, with the fingers 0.1 m apart."""
 
@@ -117,8 +119,26 @@ class DetectObject(Skill):
     ) -> tuple[DetectedObject, ...] | None:
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(pictures.see(snapshot, region, self.planning_scene))
+        found = self._seen_in(finder, self._views, region)
+        if found is None or _asked_of(found, finder.accepted) or all(map(_upright, found)):
+            return found
+        # what says how things lie looks at each picture by itself: what it puts together of
+        # several may be a part of a thing, beside which another picture shows the whole
+        for view in reversed(self._views):
+            alone = self._seen_in(finder, [view], region)
+            if alone and _asked_of(alone, finder.accepted):
+                return alone
+        return found
+
+    def _seen_in(
+        self, finder: ObjectDetector, views: Sequence[View], region: regions.SurfaceRegion
+    ) -> tuple[DetectedObject, ...] | None:
+        """What a detector finds in some views; what lies is measured by the points of all."""
         low, high = region.support_heights
-        return finder.detect(self._views, low, high, self.object)
+        found = finder.detect(views, low, high, self.object)
+        if found is None:
+            return None
+        return lying.remeasured(found, views, low, high, self.object, finder.accepted)
 
     def _corners(self) -> Array:
         surface = self.site.surfaces.get(self.on)
@@ -159,3 +179,8 @@ def _measured(thing: DetectedObject) -> str:
 def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:
     """Return the object with the best score, if that score is high enough."""
     return next((thing for thing in things if thing.score >= accepted), None)
+
+
+def _upright(thing: DetectedObject) -> bool:
+    """Whether an object's z axis is the vertical."""
+    return float(thing.pose.transform.rotation[2, 2]) > UPRIGHT

@@ -19,6 +19,7 @@ from momantu_bt.symptom import Symptom
 
 with lazily():
     from momantu_skills.gaze import surveys
+    from momantu_skills.manipulation.hand import resting
     from momantu_skills.perception.camera import pictures
     from momantu_skills.perception.geometry import regions
     from momantu_skills.perception.surface import spots, surfaces
@@ -129,6 +130,8 @@ class DetectPlane(Skill):
             across = (*self.size[:2], *self.size[:1])[:2]
         elif held is not None:
             across = held.object.size[:2]
+            if resting.lies(held.object):
+                return math.hypot(max(across), held.object.size[2]) / 2
             if held.object.shape == "cylinder":
                 return max(across) / 2
         else:

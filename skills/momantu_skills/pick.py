@@ -7,6 +7,7 @@ from typing import Any
 
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, Holding, ObjectAt
+from momantu_bt.descriptions.tunables import configured
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.lazy import lazily
@@ -17,8 +18,10 @@ from momantu_bt.skill import Compute, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.gaze.look_at import look_at
 from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.config import GraspConfig, Hold
 from momantu_skills.manipulation.hand.freshness import check_fresh
 from momantu_skills.manipulation.hand.gripper import bump, move_gripper, open_hand, rested_force
+from momantu_skills.manipulation.hand.resting import held_level, lies, put_right
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
@@ -49,6 +52,10 @@ class Pick(Skill):
 
     object: DetectedObject = In(doc="the detected object to grasp; recent pose in odom")
     lift: float = In(0.12, unit="m", least=0, most=1, doc="height to lift it, straight up")
+    by: Hold | None = In(
+        None,
+        doc="the part to hold it by; any: the body, or else rim or handle; None: the site chooses",
+    )
     also_called = ("grab", "grasp", "take", "pick_up", "lift", "get", "grip")
     failures = {
         "STALE_POSE": "the pose is too old, or something was touched since it was seen",
@@ -73,6 +80,18 @@ class Pick(Skill):
         "ARM_STUCK": {Symptom.ARM_OFF_COURSE, Symptom.HAND_STUCK, Symptom.SLOW},
     }
     planning_scene: ArmScene = Needs()
+
+    def __init__(self) -> None:
+        """Start without an object."""
+        super().__init__()
+        self._seen: DetectedObject | None = None
+
+    @property
+    def _thing(self) -> DetectedObject:
+        """The object, in a pose in which it can rest."""
+        if self._seen is None:
+            self._seen = put_right(self.object)
+        return self._seen
 
     def run(self, robot: Robot) -> Run:
         """Run all steps; each step is a method below."""
@@ -99,8 +118,8 @@ class Pick(Skill):
         if failure.code == "HAND_FULL":
             return Holding(False)
         if failure.code == "NOTHING_THERE":
-            thing = ObjectClass(self.object.category)
-            return ObjectAt(thing, self.object.pose.transform, THERE)
+            thing = ObjectClass(self._thing.category)
+            return ObjectAt(thing, self._thing.pose.transform, THERE)
         return None
 
     def _check_start(self, arm: Arm) -> None:
@@ -108,14 +127,14 @@ class Pick(Skill):
         if held is not None:
             raise Failure("HAND_FULL", f"the hand already holds a {held.object.category}")
         last = self.planning_scene.last_contact
-        check_fresh(self.object.pose, self.object.category, self.clock.now(), last, arm.hand)
+        check_fresh(self._thing.pose, self._thing.category, self.clock.now(), last, arm.hand)
 
     def _look(self, arm: Arm) -> Run:
         """Observe the surroundings and check that something stands where the object should be."""
         yield from self._turn_camera(arm)
         arm.observe()
-        arm.scene.support_below(self.object)
-        thing = self.object
+        arm.scene.support_below(self._thing)
+        thing = self._thing
         pose, support = thing.pose.transform, thing.support_height
         if not verification.stands_there(arm.scene.points, pose, thing, support):
             x, y, z = pose.position
@@ -128,18 +147,23 @@ class Pick(Skill):
     def _turn_camera(self, arm: Arm) -> Run:
         """Point the camera at the object as closely as its joints allow."""
         try:
-            yield from look_at(self, arm.robot, self.object.pose.position)
+            yield from look_at(self, arm.robot, self._thing.pose.position)
         except Failure as failure:
             if failure.code != "OUT_OF_VIEW":
                 raise
 
     def _plan(self, arm: Arm) -> reaching.PickPlan:
         try:
-            return reaching.plan_pick(arm, self.object, self.lift)
+            return reaching.plan_pick(arm, self._thing, self.lift, self._part())
         except Failure as failure:
             if failure.code != "START_IN_COLLISION":
                 raise
             raise Failure("NO_PLAN", failure.value.message, **failure.value.data) from None
+
+    def _part(self) -> Hold:
+        """The part that the tree names, or else the site."""
+        parameters = self.site.services.get("pick", {})
+        return self.by or configured(GraspConfig, parameters, "pick").by
 
     def _reach(self, arm: Arm, plan: reaching.PickPlan) -> Run:
         """Open the hand on the way to the pre-grasp, then approach in a straight line."""
@@ -168,7 +192,7 @@ class Pick(Skill):
         hand = arm.hand
         rest = yield from rested_force(arm.robot, self.frames, "feeling")
         squeezed = max(0.0, plan.grasp.width - SQUEEZE)
-        expected = HeldObject(self.object, self._grasp_from_object(arm, plan))
+        expected = HeldObject(self._thing, self._grasp_from_object(arm, plan))
         self.planning_scene.holding.expect(expected, arm.state.gripper_width)
         width = yield from move_gripper(
             arm.robot, self.clock, squeezed, arm.force, hand.close_time, "closing"
@@ -181,22 +205,27 @@ class Pick(Skill):
             raise Failure(
                 "GRASP_MISSED",
                 f"the fingers closed to {width * 1000:.0f} mm with {effort:.0f} N; "
-                f"the {self.object.category} measures {plan.grasp.width * 1000:.0f} mm there",
+                f"the {self._thing.category} measures {plan.grasp.width * 1000:.0f} mm there",
                 width=width,
                 expected=plan.grasp.width,
                 effort=effort,
             )
-        self.planning_scene.grasped(self.object, self._grasp_from_object(arm, plan))
+        self.planning_scene.grasped(self._thing, self._grasp_from_object(arm, plan))
         return rest
 
     def _grasp_from_object(self, arm: Arm, plan: reaching.PickPlan) -> Transform:
-        """Return the object's pose in the hand: as detected, but centred between the fingers."""
+        """Return the object's pose in the hand: as detected, but centred between the fingers.
+
+        What lay has been turned along the pads too.
+        """
         state = arm.state
         base_from_grasp = arm.group.tip_pose(arm.joints) @ arm.scene.model.tip_from_grasp
         odom_from_grasp = state.odom_from_base @ base_from_grasp
-        seen = odom_from_grasp.inverse() @ self.object.pose.transform
+        seen = odom_from_grasp.inverse() @ self._thing.pose.transform
         planned = plan.grasp.object_from_grasp.inverse()
-        return Transform((seen.position[0], planned.position[1], seen.position[2]), seen.quaternion)
+        centre = (seen.position[0], planned.position[1], seen.position[2])
+        held = Transform(centre, seen.quaternion)
+        return held_level(held) if lies(self._thing) else held
 
     def _lift(self, arm: Arm, plan: reaching.PickPlan, rest: Array | None) -> Run:
         """Lift, then check that the object is still in the hand and adds weight."""
@@ -223,7 +252,7 @@ class Pick(Skill):
         """Check that the place where the object stood is empty, unless the hand hides it."""
         yield "looking"
         arm.observe()
-        thing = self.object
+        thing = self._thing
         pose, support = thing.pose.transform, thing.support_height
         if verification.stands_there(arm.scene.points, pose, thing, support):
             yield from self._let_go(arm)

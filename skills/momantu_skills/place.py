@@ -1,4 +1,4 @@
-"""place: set down the held object on a free spot, and make sure that it stands there."""
+"""place: set down the held object on a free spot, and make sure that it stands or lies there."""
 
 from __future__ import annotations
 
@@ -26,7 +26,14 @@ from momantu_skills.manipulation.scene.arm_scene import ArmScene
 
 with lazily():
     from momantu_skills.gaze import unseen_ways
-    from momantu_skills.manipulation.hand import evidence, rims, verification, weighing
+    from momantu_skills.manipulation.hand import (
+        evidence,
+        lying_down,
+        resting,
+        rims,
+        verification,
+        weighing,
+    )
     from momantu_skills.manipulation.model import collision, hulls
 
 
@@ -45,12 +52,13 @@ class Place(Skill):
 
     plane: SupportPlane = In(doc="the measured surface; recent pose in odom")
     spots: tuple[Pose, ...] = In(doc="free spots on it, best first; odom, z up, on the surface")
+    upright: bool = In(False, doc="make it stand where it lay when it was picked")
     also_called = ("put", "put_down", "set_down", "drop_off", "place_object", "put_object")
     failures = {
         "NOTHING_HELD": "the hand holds nothing",
         "HELD_UNKNOWN": "the hand holds something, and no pick has said what it is",
         "STALE_POSE": "the surface was measured too long ago, or before the hand last touched it",
-        "NO_PLACE_POSE": "the hand cannot set it down upright on any of the spots from here",
+        "NO_PLACE_POSE": "the hand cannot set it down on any of the spots from here as it rested",
         "NO_PLAN": "no path leads above a spot",
         "NO_CONTACT": "lowered past the surface's height, nothing was felt",
         "LOST": "it is no longer in the hand, or not where it was set down",
@@ -154,7 +162,7 @@ class Place(Skill):
 
     def _plan(self, arm: Arm, held: HeldObject) -> PlacePlan:
         try:
-            return plan_place(arm, held, self.spots)
+            return plan_place(arm, held, self.spots, self.upright)
         except Failure as failure:
             if failure.code != "START_IN_COLLISION":
                 raise
@@ -201,7 +209,7 @@ class Place(Skill):
         yield from arm.follow(arm.trajectory(path, arm.hand.lift_speed), "drawing back")
 
     def _look_again(self, arm: Arm, plan: PlacePlan, held: HeldObject, before: Array) -> Run:
-        """Check that the object stands upright on its spot, or close to it if it slipped.
+        """Check that the object rests as planned on its spot, or close to it if it slipped.
 
         before: cells (n, 3) in odom that were occupied before; they do not belong to the object.
         """
@@ -210,7 +218,7 @@ class Place(Skill):
         yield from self._look(arm, pose.position, [corners])
         seen = self._judged(arm, pose, held, before)
         hidden = arm.scene.seen_space.hidden(corners, BEHIND)
-        if seen != "upright" and hidden.mean() > HIDDEN:
+        if seen != "there" and hidden.mean() > HIDDEN:
             yield from self._clear_the_view(arm, corners)
             yield from self._look(arm, pose.position, [corners])
             seen = self._judged(arm, pose, held, before)
@@ -221,15 +229,22 @@ class Place(Skill):
             raise Failure("LOST", f"the {what} is not where it was set down", position=where)
 
     def _judged(self, arm: Arm, pose: Transform, held: HeldObject, before: Array) -> str:
-        """Whether the object is "upright", "toppled" or "gone"; remember where it stands."""
-        bottom = float(pose.position[2] - held.object.size[2] / 2)
-        new = verification.unseen_before(arm.scene.points, before)
-        found = verification.beside(new, pose, held.object, bottom, rims.held_by_rim(held))
+        """Whether the object is "there", "toppled" or "gone"; remember where it is."""
+        thing, points = held.object, arm.scene.points
+        bottom = float(pose.position[2]) - resting.rise(thing, pose)
+        new = verification.unseen_before(points, before)
+        lying = abs(float(pose.rotation[2, 2])) < resting.LYING
+        if lying:
+            found = lying_down.beside(new, pose, thing, bottom)
+        else:
+            found = verification.beside(new, pose, thing, bottom, rims.held_by_rim(held))
+        if found is None and lying:
+            return lying_down.at(points, pose, thing, bottom)
         if found is None:
-            return verification.standing(arm.scene.points, pose, held.object, bottom)
-        if float(np.linalg.norm(found.position - pose.position)) > BESIDE:
+            return verification.standing(points, pose, thing, bottom)
+        if lying or float(np.linalg.norm(found.position - pose.position)) > BESIDE:
             self._spot = found
-        return "upright"
+        return "there"
 
     def _clear_the_view(self, arm: Arm, corners: Array) -> Run:
         """Take the hand from before the object (corners (n, 3) in odom), if the arm can.

@@ -105,12 +105,13 @@ class Arm:
         tip_from_object = self.scene.model.tip_from_grasp @ grasp_from_object
         return LEAN_PENALTY * _lean(self.group.tip_matrix(joints)[:3, :3], tip_from_object)
 
-    def blind_penalty(self, object_from_grasp: Transform) -> float:
+    def blind_penalty(self, object_from_grasp: Transform, odom_from_object: Transform) -> float:
         """Extra cost of a grasp, s, if it leaves a hand camera below the hand."""
         camera = self.scene.model.grasp_from_camera
         if camera is None:
             return 0.0
-        above = float((object_from_grasp @ camera).position[2] - object_from_grasp.position[2])
+        offset = (object_from_grasp @ camera).position - object_from_grasp.position
+        above = float(odom_from_object.rotation[2] @ offset)
         return BLIND_PENALTY if above < 0.0 else 0.0
 
     def posed(self, pose: Mapping[str, float]) -> Array:

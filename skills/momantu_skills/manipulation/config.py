@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 from pydantic import Field
 
@@ -55,6 +56,19 @@ class SceneConfig(Tunables):
         ge=1,
         description="successive updates that must contradict holding: 0.2 s at 20 Hz, longer "
         "than any bounce",
+    )
+
+
+Hold: TypeAlias = Literal["any", "body", "rim", "handle"]
+"""The part of an object by which a hand is to hold it; any: the body, or else rim or handle."""
+
+
+class GraspConfig(Tunables):
+    """How `pick` grasps where the tree says nothing of it."""
+
+    by: Hold = Field(
+        default="any",
+        description="the part to hold an object by; any: the body, or else rim or handle",
     )
 
 

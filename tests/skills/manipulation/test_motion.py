@@ -192,7 +192,7 @@ def can_points(upright: bool = True) -> np.ndarray:
 
 def test_what_a_picture_says_of_a_spot() -> None:
     pose = Transform((0.0, 0.0, 0.765))
-    assert standing(can_points(), pose, CAN, 0.7) == "upright"
+    assert standing(can_points(), pose, CAN, 0.7) == "there"
     assert standing(can_points(upright=False), pose, CAN, 0.7) == "toppled"
     assert standing(np.empty((0, 3)), pose, CAN, 0.7) == "gone"
     assert standing(moved(can_points(), x=0.5), pose, CAN, 0.7) == "gone"

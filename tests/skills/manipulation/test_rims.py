@@ -64,7 +64,7 @@ def test_a_plate_has_no_rim_for_the_fingers() -> None:
 
 @given(st.floats(0.0, 0.05))
 def test_closed_fingers_hold_no_wall(width: float) -> None:
-    rim = Grasp(Transform(), 0.010, 0.0, rim=True)
+    rim = Grasp(Transform(), 0.010, 0.0, "rim")
     assert rim.fits(width, 0.012) is (THINNEST <= width <= THICKEST)
     assert Grasp(Transform(), 0.010, 0.0).fits(width, 0.012) is (width <= 0.022)
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,10 @@ TILTS = (0.0, math.radians(15), math.radians(30), math.radians(50))
 """Angles of the fingers below the horizontal, rad."""
 HEIGHTS = (0.5, 0.62, 0.78)
 """Heights of the grasp, as shares of the object's height."""
+LYING_HEIGHTS = (0.5, 0.38, 0.62)
+"""The same of an object that lies."""
+BOTTLE_HEIGHTS = (0.4, 0.3, 0.5)
+"""The same of a bottle that lies: its body is heavier than its neck, and its shoulder slips out."""
 TOP_TURNS = 12
 """Number of finger directions in a grasp from above."""
 SLACK = 0.004
@@ -72,8 +76,18 @@ RIM_LEAST = 0.020
 """Least such depth for a firm hold, m."""
 RIM_FLOOR = 0.025
 """Height of the fingers' tips above what the object stands on, m: its bottom, and room below."""
+OVER_FLOOR = 0.008
+"""Clearance between fingers and the surface that a lying object rests on, m: the hand's own (see
+`HandConfig.near_margin`), and what a finger's hull is larger than the finger."""
+DOWN = -math.sin(math.radians(20))
+"""A lying object is taken by fingers that point at least this much down: others would have to come
+through the surface, or lie on it."""
 RIM_SHARES = (0.0, 0.5, -0.5)
 """Places along a side of a box, as shares of half the side."""
+
+
+Part: TypeAlias = Literal["body", "rim", "handle"]
+"""What of an object is between the pads."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,30 +96,48 @@ class Grasp:
 
     object_from_grasp: the grasp frame's pose when the fingers close. width: between the pads then,
     m. penalty: cost in seconds; another grasp may take this much longer and still be preferred.
-    rim: one finger is inside the object, and its wall is between the pads.
+    part: what is between the pads. At a rim one finger is inside the object.
     """
 
     object_from_grasp: Transform
     width: float
     penalty: float
-    rim: bool = False
+    part: Part = "body"
+
+    @property
+    def rim(self) -> bool:
+        """Whether it holds the object by its rim."""
+        return self.part == "rim"
 
     def fits(self, width: float, tolerance: float) -> bool:
         """Whether fingers that closed to `width` m may hold the object like this."""
-        if self.rim:
-            return THINNEST <= width <= THICKEST
-        return abs(width - self.width) <= tolerance
+        if self.part == "body":
+            return abs(width - self.width) <= tolerance
+        return THINNEST <= width <= THICKEST
 
 
 class _Fingers(NamedTuple):
     """Planes around each finger, in the grasp frame: fully open, and closed on the object.
 
-    seat: where along them a round object is held firmly; None for others.
+    seat: where along them a round object is held firmly; None for others. floor: what a lying
+    object rests on.
     """
 
     open: Sequence[Array]
     closed: Sequence[Array]
     seat: Seat | None
+    floor: Floor | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """The surface below a lying object, in the object's frame.
+
+    up: its normal (3,). points: (n, 3) of it around the object, m.
+    """
+
+    up: Array
+    points: Array
 
 
 def grasps_for(
@@ -115,6 +147,7 @@ def grasps_for(
     fingers: Sequence[Array] = (),
     tight: bool = False,
     closing: Callable[[float], Sequence[Array]] | None = None,
+    floor: Floor | None = None,
 ) -> list[Grasp]:
     """All useful grasps, in a fixed order; those over its rim if the object is too wide for others.
 
@@ -124,26 +157,38 @@ def grasps_for(
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
     edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
-    Round things slide out from between knuckles: see `Seat`.
+    Round things slide out from between knuckles: see `Seat`. floor: of a lying object, whose grasps
+    are across its axis and keep the fingers above what it lies on.
     """
     opening, share = (TIGHT, TIGHT_SHARE) if tight else (OPENING, PAD_SHARE)
     found: list[Grasp] = []
-    fitting = [a for a in approaches(thing) if a[0] <= hand.max_width - opening]
+    ways = approaches(thing) if floor is None else _across(thing, floor)
+    fitting = [a for a in ways if a[0] <= hand.max_width - opening]
     is_box = thing.shape == "box"
     seat = None
     if fitting and closing is not None and not is_box:
         seat = Seat(hand, fitting[0][0] / 2, closing)
     for width, direction, top in fitting:
-        closed = closing(width) if closing is not None and is_box else ()
-        both = _Fingers(fingers, closed, seat)
+        closed = closing(width) if closing is not None and (is_box or floor) else ()
+        both = _Fingers(fingers, closed, seat, floor)
         if top:
             found += _from_above(thing, hand, both, direction, width)
         else:
             farthest = _farthest(thing, hand, direction, share)
             found += _from_side(thing, hand, palm, both, direction, width, farthest)
-    if not fitting:
-        found = list(_over_rim(thing, hand))
-    return [flipped for grasp in found for flipped in (grasp, _flipped(grasp))]
+    if not fitting and floor is None:
+        return over_rim(thing, hand)
+    return both_ways(found)
+
+
+def over_rim(thing: DetectedObject, hand: EndEffector) -> list[Grasp]:
+    """Grasps of an upright object by its rim; whether it is hollow is not known here."""
+    return both_ways(_over_rim(thing, hand))
+
+
+def both_ways(grasps: Iterable[Grasp]) -> list[Grasp]:
+    """Each grasp, and the same with the hand turned by 180 degrees about its approach."""
+    return [turned for grasp in grasps for turned in (grasp, _flipped(grasp))]
 
 
 def approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
@@ -162,6 +207,15 @@ def approaches(thing: DetectedObject) -> Iterator[tuple[float, float, bool]]:
             yield width, i * math.pi / 2, True
 
 
+def _across(thing: DetectedObject, floor: Floor) -> Iterator[tuple[float, float, bool]]:
+    """The same for an object that lies: straight down, and beside that as far as DOWN."""
+    down = math.atan2(-float(floor.up[1]), -float(floor.up[0]))
+    for off in range(-AZIMUTHS // 4, AZIMUTHS // 4 + 1):
+        turn = 2 * math.pi * off / AZIMUTHS
+        if -math.cos(turn) <= DOWN:
+            yield max(thing.size[:2]), down + turn, False
+
+
 def _from_side(
     thing: DetectedObject,
     hand: EndEffector,
@@ -171,8 +225,9 @@ def _from_side(
     width: float,
     farthest: float,
 ) -> Iterator[Grasp]:
-    surface = _surface(thing)
-    for tilt, share in product(TILTS, HEIGHTS):
+    surface = surface_of(thing)
+    shares = _shares(thing, fingers)
+    for tilt, share in product(TILTS, shares):
         x = np.array(
             [
                 math.cos(tilt) * math.cos(direction),
@@ -184,15 +239,24 @@ def _from_side(
         rotation = np.stack([x, y, np.cross(x, y)], axis=1)
         centre = np.array([0.0, 0.0, (share - 0.5) * thing.size[2]])
         local = (surface - centre) @ rotation
-        back = _outwards(local, fingers, _setback(local, hand, palm), farthest)
+        back = _outwards(local, fingers, setback(local, hand, palm), farthest)
+        if back is not None and fingers.floor is not None:
+            back = _above(fingers, (fingers.floor.points - centre) @ rotation, back, farthest)
         if back is None:
             continue
         held = back if fingers.seat is None else fingers.seat.best(back, farthest)
         tilting = TILT_PENALTY if held == back else EDGE_PENALTY
         back = held
-        penalty = tilting * tilt + SWING_PENALTY * (share - HEIGHTS[0]) * thing.size[2]
+        penalty = tilting * tilt + SWING_PENALTY * abs(share - shares[0]) * thing.size[2]
         penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
+
+
+def _shares(thing: DetectedObject, fingers: _Fingers) -> tuple[float, ...]:
+    """Heights at which an object is held, as shares of its own, the best first."""
+    if fingers.floor is None:
+        return HEIGHTS
+    return BOTTLE_HEIGHTS if thing.category == "bottle" else LYING_HEIGHTS
 
 
 def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share: float) -> float:
@@ -203,7 +267,7 @@ def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share:
     return along / 2 + hand.pad_length / 2 - FACE_SHARE
 
 
-def _setback(local: Array, hand: EndEffector, palm: Array) -> float:
+def setback(local: Array, hand: EndEffector, palm: Array) -> float:
     """Distance of the grasp frame behind the object's axis at which the palm clears it, m.
 
     local: points (n, 3) of the object, in the grasp frame if that were on the axis.
@@ -219,14 +283,24 @@ def _outwards(local: Array, fingers: _Fingers, back: float, farthest: float) -> 
 
     Where closed ones do so everywhere, they hold the object as they can.
     """
-    clear = _clear(local, fingers.open, ROOM, back, farthest)
+    clear = clear_of(local, fingers.open, ROOM, back, farthest)
     if clear is None:
         return None
-    closed = _clear(local, fingers.closed, -TOUCH, clear, farthest)
+    closed = clear_of(local, fingers.closed, -TOUCH, clear, farthest)
     return clear if closed is None else closed
 
 
-def _clear(
+def _above(fingers: _Fingers, floor: Array, back: float, farthest: float) -> float | None:
+    """`back`, or more until open and closed fingers clear the floor's points (n, 3), m."""
+    for planes in (fingers.open, fingers.closed):
+        clear = clear_of(floor, planes, OVER_FLOOR, back, farthest)
+        if clear is None:
+            return None
+        back = clear
+    return back
+
+
+def clear_of(
     local: Array, fingers: Sequence[Array], room: float, back: float, farthest: float
 ) -> float | None:
     """The least distance from `back` to `farthest` at which fingers clear points by `room`, m."""
@@ -253,7 +327,7 @@ def _from_above(
     rotation = np.stack([x, y, np.cross(x, y)], axis=1)
     deepest = min(hand.hand_clearance - SLACK, thing.size[2] / 2)
     centre = np.array([0.0, 0.0, thing.size[2] / 2 - deepest])
-    back = _outwards((_surface(thing) - centre) @ rotation, fingers, 0.0, deepest)
+    back = _outwards((surface_of(thing) - centre) @ rotation, fingers, 0.0, deepest)
     if back is None:
         return
     centre[2] += back
@@ -261,7 +335,7 @@ def _from_above(
 
 
 def _over_rim(thing: DetectedObject, hand: EndEffector) -> Iterator[Grasp]:
-    """One finger inside, one outside, the hand above; whether it is hollow is not known here."""
+    """One finger inside, one outside, the hand above."""
     overlap = min(RIM_DEPTH, thing.size[2] - RIM_FLOOR)
     if overlap < RIM_LEAST or overlap - hand.pad_length / 2 > hand.hand_clearance - SLACK:
         return
@@ -271,7 +345,7 @@ def _over_rim(thing: DetectedObject, hand: EndEffector) -> Iterator[Grasp]:
         y = np.array([math.cos(direction), math.sin(direction), 0.0])
         rotation = np.stack([x, y, np.cross(x, y)], axis=1)
         place = np.array([along, across, height]) - RIM_WALL / 2 * y
-        yield Grasp(Transform.from_rotation(rotation, place), RIM_WALL, TOP_PENALTY, rim=True)
+        yield Grasp(Transform.from_rotation(rotation, place), RIM_WALL, TOP_PENALTY, "rim")
 
 
 def _rim_places(thing: DetectedObject) -> Iterator[tuple[tuple[float, float], float]]:
@@ -293,7 +367,7 @@ def _flipped(grasp: Grasp) -> Grasp:
     return replace(grasp, object_from_grasp=grasp.object_from_grasp @ turn)
 
 
-def _surface(thing: DetectedObject) -> Array:
+def surface_of(thing: DetectedObject) -> Array:
     """Points (n, 3) on the object's surface, about a centimetre apart, in its frame."""
     half = np.array(thing.size) / 2
     heights = np.linspace(-half[2], half[2], max(2, math.ceil(thing.size[2] / 0.01)))

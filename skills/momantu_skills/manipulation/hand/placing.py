@@ -10,10 +10,11 @@ from itertools import islice
 import numpy as np
 
 from momantu_bt.failure import Failure
-from momantu_bt.geometry import Array, Pose, Transform
+from momantu_bt.geometry import Array, Pose, Transform, quaternion_from_axis_angle
 from momantu_bt.messages import JointTrajectory
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.hand.resting import UPRIGHT, lies, rise
 
 YAWS = 16
 """Number of yaw angles in which an object may be placed."""
@@ -30,13 +31,18 @@ TESTED = 900
 DROP = 0.006
 """Height above the measured surface at which a hand without force sensor releases, m: such a fall
 topples nothing, and a surface that is this much higher is not pressed hard."""
+ROLLS = (0.0, math.radians(35), -math.radians(35))
+"""How far a lying object may be rolled about its axis before it is set down, rad: it lies alike,
+and the hand comes down another way."""
+ROLL_PENALTY = 1.0
+"""Cost of that, s: the hand comes nearer to the surface."""
 SPOT_PENALTY = 0.5
 """Cost per rank of a spot, s: the first spots are the better ones."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlacePlan:
-    """The motions for placing. odom_from_object: where the object will stand.
+    """The motions for placing. odom_from_object: where the object will stand or lie.
 
     lower: down past the surface, for a hand with force sensor; blind: to just above the surface,
     for other hands.
@@ -56,14 +62,18 @@ class _Candidate:
     cost: float
 
 
-def plan_place(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> PlacePlan:
+def plan_place(
+    arm: Arm, held: HeldObject, spots: Sequence[Pose], upright: bool = False
+) -> PlacePlan:
     """Choose a spot and a yaw; plan the path above the spot and the path down.
 
+    The object is set down as it rested when it was seen; upright: it is made to stand.
+
     Raises:
-        Failure: NO_PLACE_POSE if the hand cannot place it upright on any spot, NO_PLAN if no
+        Failure: NO_PLACE_POSE if the hand cannot place it like that on any spot, NO_PLAN if no
             path leads above the spots where it could, START_IN_COLLISION.
     """
-    candidates = _feasible(arm, held, spots)
+    candidates = _feasible(arm, held, spots, upright)
     transit = arm.route([c.lower[0] for c in candidates], held)
     end = transit[-1].positions[-1] if transit else arm.joints
     best = min(candidates, key=lambda c: float(np.abs(arm.turned(c.lower[0], end) - end).max()))
@@ -82,16 +92,17 @@ def retreat_of(arm: Arm, held: HeldObject) -> Transform:
     return Transform((-arm.hand.approach, 0.0, 0.0))
 
 
-def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose]) -> list[_Candidate]:
-    postures = list(islice(_postures(arm, held, spots), TESTED))
+def _feasible(arm: Arm, held: HeldObject, spots: Sequence[Pose], upright: bool) -> list[_Candidate]:
+    postures = list(islice(_postures(arm, held, spots, upright), TESTED))
     for supposed in arm.stages:
         found, lost = _possible(arm, held, postures, supposed)
         if found:
             return found
     where = ", ".join(f"{n} at {what}" for what, n in lost.items() if n)
+    how = "lying" if lies(held.object) and not upright else "upright"
     raise Failure(
         "NO_PLACE_POSE",
-        f"the hand can set the {held.object.category} down upright on none of {len(spots)} "
+        f"the hand can set the {held.object.category} down {how} on none of {len(spots)} "
         f"spots: {where or 'no posture of the arm reaches them'}",
         **lost,
     )
@@ -132,7 +143,7 @@ def _possible(
 
 
 def _postures(
-    arm: Arm, held: HeldObject, spots: Sequence[Pose]
+    arm: Arm, held: HeldObject, spots: Sequence[Pose], upright: bool
 ) -> Iterator[tuple[Transform, Array, float]]:
     """(odom_from_object, joints above it (n,), cost in s), cheapest first."""
     state, start, group = arm.state, arm.joints, arm.group
@@ -140,9 +151,9 @@ def _postures(
     object_from_tip = (arm.scene.model.tip_from_grasp @ held.grasp_from_object).inverse()
     poses, penalties = [], []
     for rank, spot in enumerate(spots):
-        for i in range(YAWS):
-            poses.append(_standing(spot, held, 2 * math.pi * i / YAWS))
-            penalties.append(SPOT_PENALTY * rank)
+        for pose, penalty in _resting(spot, held, upright):
+            poses.append(pose)
+            penalties.append(SPOT_PENALTY * rank + penalty)
     above = Transform((0.0, 0.0, arm.hand.above))
     targets = [(base_from_odom @ above @ pose @ object_from_tip).matrix for pose in poses]
     seeds = arm.seeds(start, STARTS if group.few else SEEDS)
@@ -166,6 +177,24 @@ def _as_held(arm: Arm, object_from_tip: Transform, q: Array) -> Transform:
     """odom_from_object on the spot above which the arm holds it at joints (n,)."""
     above = Transform((0.0, 0.0, -arm.hand.above))
     return arm.state.odom_from_base @ above @ arm.group.tip_pose(q) @ object_from_tip.inverse()
+
+
+def _resting(spot: Pose, held: HeldObject, upright: bool) -> Iterator[tuple[Transform, float]]:
+    """odom_from_object on a spot, with a cost in s, for all yaws: as it rested, or upright."""
+    thing, seen = held.object, held.object.pose.transform
+    as_it_was = seen.rotation[2, 2] < UPRIGHT and not upright
+    for i in range(YAWS):
+        standing = _standing(spot, held, 2 * math.pi * i / YAWS)
+        if not as_it_was:
+            yield standing, 0.0
+            continue
+        x, y, _ = standing.position
+        for roll in ROLLS if lies(thing) else ROLLS[:1]:
+            turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), roll)
+            rest = Transform((0.0, 0.0, 0.0), seen.quaternion) @ Transform((0.0, 0.0, 0.0), turn)
+            rest = Transform((0.0, 0.0, 0.0), standing.quaternion) @ rest
+            z = spot.position[2] + rise(thing, rest)
+            yield Transform((x, y, z), rest.quaternion), ROLL_PENALTY * abs(roll)
 
 
 def _standing(spot: Pose, held: HeldObject, yaw: float) -> Transform:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice, product
 
 import numpy as np
@@ -14,8 +14,11 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject, JointTrajectory, RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.arm import Arm
-from momantu_skills.manipulation.hand.grasps import Grasp, grasps_for
-from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim, wall_pieces
+from momantu_skills.manipulation.config import Hold
+from momantu_skills.manipulation.hand.choosing import Options, options_for
+from momantu_skills.manipulation.hand.grasps import Grasp
+from momantu_skills.manipulation.hand.resting import lies
+from momantu_skills.manipulation.hand.rims import wall_pieces
 from momantu_skills.manipulation.hand.sides import Sides, sentence
 from momantu_skills.manipulation.hand.underside import low_penalty
 from momantu_skills.manipulation.model.collision import CollisionWorld, Obstacle
@@ -74,14 +77,16 @@ class PickPlan:
     lift: JointTrajectory
 
 
-def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
+def plan_pick(arm: Arm, thing: DetectedObject, lift: float, by: Hold = "any") -> PickPlan:
     """Choose a grasp; plan its approach, its lift and the path to them.
+
+    by: the part that is to be held, see `options_for`.
 
     Raises:
         Failure: NO_GRASP if no grasp can be reached, NO_PLAN if no path leads to any of those
             that can, START_IN_COLLISION.
     """
-    reaches = reachable(arm, thing, lift)
+    reaches = reachable(arm, thing, lift, by)
     state = arm.state
     base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
     target = Obstacle("target", base_from_object.apply(object_corners(thing, SKIN)))
@@ -99,7 +104,7 @@ def plan_pick(arm: Arm, thing: DetectedObject, lift: float) -> PickPlan:
     )
 
 
-def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
+def reachable(arm: Arm, thing: DetectedObject, lift: float, by: Hold = "any") -> list[Reach]:
     """Grasps with possible approach, closing and lift, best first.
 
     What is assumed behind the object's visible faces counts as an obstacle, unless nothing is left
@@ -109,50 +114,21 @@ def reachable(arm: Arm, thing: DetectedObject, lift: float) -> list[Reach]:
         Failure: NO_GRASP, with the number of postures that failed at each step, and why each side
             of the object fell out.
     """
-    grasps = _fitting(arm, thing)
+    options = options_for(arm, thing, by)
+    grasps = options.grasps
     postures = list(_postures(arm, thing, grasps))[:TESTED]
     for supposed, filled in product(arm.stages, (False, True)):
-        check = _Check(arm, thing, lift, Cut(thing.pose.transform, _cut(thing), filled), supposed)
+        cut = Cut(thing.pose.transform, _cut(thing, options), filled)
+        check = _Check(arm, thing, lift, cut, supposed, options)
         found = list(islice(filter(None, (check(*posture) for posture in postures)), ENOUGH))
         if found:
             return found
-    sides = check.sides.told(grasps)
+    sides = {**check.sides.told(grasps), **options.missing}
     raise Failure(
         "NO_GRASP",
         f"none of {len(grasps)} grasps can be approached, held and lifted: {sentence(sides)}",
         sides=sides,
         **check.lost,
-    )
-
-
-def _fitting(arm: Arm, thing: DetectedObject) -> list[Grasp]:
-    """The grasps that the hand is wide enough for; over a rim, those that pictures show room for.
-
-    Where there are none, those for which the hand is hardly large enough.
-
-    Raises:
-        Failure: NO_GRASP if there are none of these either.
-    """
-    effector, model = arm.scene.model.description.hand, arm.scene.model
-    hand = (effector, model.palm, model.open_fingers)
-    grasps = grasps_for(thing, *hand, closing=model.fingers_at)
-    wide = bool(grasps) and grasps[0].rim
-    if wide:
-        space, seen = arm.scene.seen_space, arm.scene.points
-        grasps = [grasp for grasp in grasps if seen_rim(seen, thing, grasp)]
-        grasps = [g for g in grasps if seen_hollow(space, thing, g, model.open_fingers)]
-    if not grasps:
-        tight = grasps_for(thing, *hand, tight=True, closing=model.fingers_at)
-        grasps = [grasp for grasp in tight if not grasp.rim]
-    if grasps:
-        return grasps
-    rim = ", and no picture shows room for a finger behind its rim" if wide else ""
-    raise Failure(
-        "NO_GRASP",
-        f"the {thing.category} measures {thing.size[0] * 1000:.0f} x "
-        f"{thing.size[1] * 1000:.0f} mm, the gripper opens to "
-        f"{effector.max_width * 1000:.0f} mm{rim}",
-        sides=Sides(arm, thing).told(()),
     )
 
 
@@ -177,7 +153,7 @@ def _postures(
         solved = group.nearest_turn(found[i][good[i]], start)
         costs = np.max(np.abs(solved - start) / group.velocity, axis=1)
         costs += grasp.penalty + arm.carry_penalty(grasp.object_from_grasp.inverse())
-        costs += arm.blind_penalty(grasp.object_from_grasp)
+        costs += arm.blind_penalty(grasp.object_from_grasp, thing.pose.transform)
         order = np.argsort(costs, kind="stable")[:POSTURES]
         low = low_penalty(arm, thing, solved[order[0]]) if len(order) else 0.0
         ranked += [(float(costs[j]) + low, i, solved[j]) for j in order]
@@ -195,7 +171,7 @@ def _upright_postures(
     """
     start, group = arm.joints, arm.group
     object_from_base = (arm.state.odom_from_base.inverse() @ thing.pose.transform).inverse()
-    limit = math.inf if thing.shape == "cylinder" else SQUARE
+    limit = math.inf if thing.shape == "cylinder" and not lies(thing) else SQUARE
     centre = object_from_base.inverse().position
     found, good = group.solve_upright(targets, centre, arm.seeds(start, STARTS), limit)
     ranked: list[tuple[float, int, Grasp, Array]] = []
@@ -207,10 +183,10 @@ def _upright_postures(
                 continue
             known.add(key)
             place = object_from_base @ group.tip_pose(q) @ arm.scene.model.tip_from_grasp
-            own = Grasp(place, grasp.width, grasp.penalty)
+            own = replace(grasp, object_from_grasp=place)
             cost = float(np.max(np.abs(q - start) / group.velocity)) + grasp.penalty
-            cost += arm.carry_penalty(place.inverse()) + arm.blind_penalty(place)
-            cost += low_penalty(arm, thing, q)
+            cost += arm.carry_penalty(place.inverse())
+            cost += arm.blind_penalty(place, thing.pose.transform) + low_penalty(arm, thing, q)
             ranked.append((cost, i, own, q))
     ranked.sort(key=lambda item: item[:2])
     for cost, _, own, q in ranked:
@@ -221,7 +197,13 @@ class _Check:
     """Checks hand, approach and lift of a posture at a grasp; counts the failures per step."""
 
     def __init__(
-        self, arm: Arm, thing: DetectedObject, lift: float, cut: Cut, supposed: float | None
+        self,
+        arm: Arm,
+        thing: DetectedObject,
+        lift: float,
+        cut: Cut,
+        supposed: float | None,
+        options: Options,
     ) -> None:
         self._arm, self._thing, self._lift = arm, thing, lift
         self._state: RobotState = arm.state
@@ -231,13 +213,17 @@ class _Check:
             self._state, None, margin, width=arm.open_width, cut=cut, supposed=supposed
         )
         solids = [object_corners(thing)]
-        self._around = _around(arm, self._state, thing, solids)
-        self._walls = _around(arm, self._state, thing, wall_pieces(thing))
+        handle = options.handle_corners(thing)
+        self._around = {
+            "body": _around(arm, self._state, thing, [*solids, *handle]),
+            "rim": _around(arm, self._state, thing, [*wall_pieces(thing), *handle]),
+            "handle": _around(arm, self._state, thing, solids),
+        }
         self.lost = {"hand collides": 0, "approach": 0, "lift": 0}
         self.sides = Sides(arm, thing)
 
     def __call__(self, grasp: Grasp, q: Array, cost: float) -> Reach | None:
-        arm, around = self._arm, self._walls if grasp.rim else self._around
+        arm, around = self._arm, self._around[grasp.part]
         if not (self._open.free(q) and around.free(q)):
             self._lost("hand collides", grasp, q, self._open, around)
             return None
@@ -285,6 +271,8 @@ def _around(
     return CollisionWorld(arm.scene.body, posture, solids, margin=BESIDE)
 
 
-def _cut(thing: DetectedObject) -> tuple[float, float, float]:
+def _cut(thing: DetectedObject, options: Options) -> tuple[float, float, float]:
     x, y, z = (edge / 2 + more for edge, more in zip(thing.size, CUT, strict=True))
+    if options.handle is not None:
+        x = y = max(x, options.handle.outer + CUT[0])
     return x, y, z

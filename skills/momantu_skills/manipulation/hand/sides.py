@@ -38,9 +38,9 @@ class Sides:
             self._first[side] = (q, worlds)
 
     def side_of(self, grasp: Grasp) -> str:
-        """The side from which the hand comes: above, front, left, right or back; "rim" for one."""
-        if grasp.rim:
-            return "rim"
+        """The side from which the hand comes: above, front, left, right or back; or the part."""
+        if grasp.part != "body":
+            return grasp.part
         return self._side(grasp.object_from_grasp.rotation[:, 0])
 
     def told(self, grasps: Sequence[Grasp]) -> dict[str, str]:
@@ -49,8 +49,8 @@ class Sides:
         reasons: dict[str, str] = {}
         for width, direction, top in approaches(self._thing):
             if width > widest - OPENING:
-                ahead = np.array([math.cos(direction), math.sin(direction), 0.0])
-                side = "above" if top else self._side(ahead)
+                level = (math.cos(direction), math.sin(direction), 0.0)
+                side = self._side(np.array((0.0, 0.0, -1.0) if top else level))
                 text = (
                     f"{width * 1000:.0f} mm wide there, the hand opens to {widest * 1000:.0f} mm "
                     f"and needs {OPENING * 1000:.0f} mm more than the width"

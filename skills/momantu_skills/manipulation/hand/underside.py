@@ -7,6 +7,7 @@ import numpy as np
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 from momantu_skills.manipulation.arm import Arm
+from momantu_skills.manipulation.hand.resting import lies, rise
 
 FINGERS = 0.06
 """Distance from the object up to which nothing stands where it is put down, m: the open fingers
@@ -19,15 +20,16 @@ be put down so: every fifth goal has some, and two tries that fail take 20 s."""
 
 
 def low_penalty(arm: Arm, thing: DetectedObject, q: Array) -> float:
-    """Cost of holding an upright object with the arm at joints (n,), s: 0 if the arm is above it.
+    """Cost of holding an object with the arm at joints (n,), s: 0 if the arm is above it.
 
     Things beside the object are taken to be at most as tall as itself, each height as likely. So
     the cost grows with the share of the object's height in which the arm is in their way.
     """
     base_from_object = arm.state.odom_from_base.inverse() @ thing.pose.transform
-    bottom = float(base_from_object.position[2]) - thing.size[2] / 2
+    half = rise(thing, thing.pose.transform)
+    bottom = float(base_from_object.position[2]) - half
     room = _underside(arm, thing, base_from_object, q) - bottom
-    return LOW_PENALTY * min(1.0, max(0.0, 1.0 - room / thing.size[2]))
+    return LOW_PENALTY * min(1.0, max(0.0, 1.0 - room / (2 * half)))
 
 
 def _underside(arm: Arm, thing: DetectedObject, base_from_object: Transform, q: Array) -> float:
@@ -42,5 +44,6 @@ def _underside(arm: Arm, thing: DetectedObject, base_from_object: Transform, q: 
         ]
     )
     away = np.linalg.norm(corners[:, :2] - base_from_object.position[:2], axis=1)
-    beside = (away > max(thing.size[:2]) / 2 + FINGERS) & (away < FAR)
+    wide = max(thing.size if lies(thing) else thing.size[:2]) / 2
+    beside = (away > wide + FINGERS) & (away < FAR)
     return float(corners[beside, 2].min(initial=np.inf))

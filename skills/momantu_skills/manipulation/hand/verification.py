@@ -61,7 +61,7 @@ def stands_there(points: Array, pose: Transform, thing: DetectedObject, support:
 
 
 def standing(points: Array, pose: Transform, thing: DetectedObject, support: float) -> str:
-    """What the points (n, 3) show around a spot: "upright", "toppled" or "gone".
+    """What the points (n, 3) show around a spot: "there" (upright), "toppled" or "gone".
 
     pose: `odom_from_object` of the object standing upright there.
     """
@@ -69,7 +69,7 @@ def standing(points: Array, pose: Transform, thing: DetectedObject, support: flo
     mine = points_of(points, pose, thing, support)
     top = support + thing.size[2]
     if len(mine) >= SOME and float(np.quantile(mine[:, 2], 0.98)) > top - TOP:
-        return "upright"
+        return "there"
     near = points[(flat < AROUND) & (points[:, 2] > support + ABOVE)]
     near = near[near[:, 2] < top + TOP]
     if len(near) < SOME:

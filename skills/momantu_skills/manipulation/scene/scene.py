@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -52,6 +53,8 @@ PER_METRE = 1e4
 """Places of cells are whole tenths of a millimetre, so that a cell seen twice is one cell."""
 SUPPOSED = PlanningConfig().supposed[0]
 """How much nearer than on its maps what may be as tall as a wall stands, m, where nobody says."""
+KEPT = 8
+"""Newest pictures whose points are kept: those of two looks for an object, and of its grasp."""
 FORGET = 2.0
 """Distance from the base above which cells and supports are deleted, m, because odometry has
 drifted since."""
@@ -86,6 +89,7 @@ class Scene:
         self.model = arm_model(description)
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
+        self._pictures: deque[tuple[float, Array]] = deque(maxlen=KEPT)
         self.known: tuple[Support, ...] = ()
         self.overhead: tuple[Overhead, ...] = ()
         self.columns: Columns | None = None
@@ -115,6 +119,7 @@ class Scene:
         nearest = self.model.description.camera()[1].min_depth
         self.seen_space.add(image, odom_from_camera, nearest)
         self.points = self._seen(snapshot, held)
+        self._pictures.append((image.stamp, self.points))
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         cells = self._with_older(new, self.surroundings.cells, snapshot)
         new = faces_of(self.points, FLOOR_BAND, self.config)
@@ -156,6 +161,11 @@ class Scene:
         depth = image.depth[np.clip(v, 0, height - 1), np.clip(u, 0, width - 1)]
         gone = inside & (depth > z + SEEN_THROUGH)
         return np.asarray(near & ~gone)
+
+    def points_since(self, stamp: float) -> Array:
+        """Points (n, 3) in odom of the newest pictures that were taken after a time, s."""
+        later = [points for taken, points in self._pictures if taken > stamp]
+        return np.vstack([np.empty((0, 3)), *later])
 
     def add_support(self, plane: SupportPlane) -> None:
         """Add a measured surface."""

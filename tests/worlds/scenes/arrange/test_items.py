@@ -1,14 +1,18 @@
 """Anything loose may be what is brought: it is placed, judged, and nothing else is like it."""
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
+from momantu_worlds.scenes.arrange.episode import bodies
 from momantu_worlds.scenes.arrange.layout import Layout
 from momantu_worlds.scenes.arrange.variation import vary
-from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind, Thing
+from momantu_worlds.scenes.catalogue.objects import LYING_KINDS, OBJECT_KINDS, ObjectKind, Thing
 from momantu_worlds.scenes.file.objects import Item
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.bodies import Body
+from momantu_worlds.scenes.geometry.solids import PlacedBody
 from momantu_worlds.scenes.geometry.support import UprightCylinder
 from momantu_worlds.scenes.loading import load_world
 from momantu_worlds.worlds import four_rooms
@@ -86,3 +90,29 @@ def test_nothing_of_its_kind_is_like_it(kind: ObjectKind) -> None:
 def test_a_box_with_a_radius_is_refused_with_what_it_has() -> None:
     with pytest.raises(ValueError, match="a box has a size, no radius and height"):
         world_with({"kind": "box", "radius": 0.03, "height": 0.1})
+
+
+@pytest.mark.parametrize("kind", LYING_KINDS)
+def test_what_lies_touches_its_table_all_along_and_stays_on_it(kind: ObjectKind) -> None:
+    for seed in range(6):
+        world = world_with({"kind": kind, **sizes(kind), "lying": True})
+        layout = vary(world, seed)
+        placed = layout.object("thing")
+        table = layout.tables[placed.table]
+        assert placed.thing.height == pytest.approx(SIZES[kind][0])
+        item = next(b for b in bodies(world, layout) if b.name == "thing")
+        solid = PlacedBody(item, table.map_from_top.inverse() @ item.map_from_body)
+        assert solid.lowest == pytest.approx(0.0, abs=1e-6)
+        assert solid.pose.rotation[2, 2] == pytest.approx(0.0, abs=1e-9)
+        half = np.array(table.size) / 2
+        for each in solid.solids:
+            assert (np.abs(each.vertices[:, :2]) <= half).all()
+        # the top of the thing is towards its yaw
+        assert np.allclose(
+            solid.pose.rotation[:2, 2], (math.cos(placed.at.yaw), math.sin(placed.at.yaw))
+        )
+
+
+def test_a_bowl_does_not_lie() -> None:
+    with pytest.raises(ValueError, match="a bowl does not lie here; lying things: bottle, can"):
+        world_with({"kind": "bowl", **sizes("bowl"), "lying": True})

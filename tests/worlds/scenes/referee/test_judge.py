@@ -357,3 +357,32 @@ def test_below_a_body_is_the_highest_top_under_its_middle() -> None:
     assert scene.below(scene.body("can")) == ("desk", pytest.approx(0.2))
     truth.moved["can"] = Transform((2.8, 0.7, 0.1))
     assert scene.below(scene.body("can")) == ("floor", pytest.approx(0.1))
+
+
+LAID = Transform((2.8, 0.7, TOP + 0.035), quaternion_from_rpy(0.0, math.pi / 2, 0.4))
+"""The can on its side; its middle is half of its height along the axis."""
+
+
+@pytest.mark.parametrize(
+    ("yaw", "said"), [(0.4, True), (0.4 + math.pi, True), (0.6, True), (1.0, False), (2.0, False)]
+)
+def test_what_lies_is_along_the_axis_that_is_told(yaw: float, said: bool) -> None:
+    truth = Truth()
+    truth.moved["can"] = LAID
+    x, y, z = LAID.apply((0.0, 0.0, 0.065))
+    level = in_odom(truth, x, y, z, yaw) @ Transform(
+        (0.0, 0.0, 0.0), quaternion_from_rpy(0.0, math.pi / 2, 0.0)
+    )
+    assert judged(ObjectAt(CAN, level, 0.02), truth) is said
+    assert judged(SetDown(level, 0.02), truth) is said
+
+
+def test_what_stands_does_not_lie_and_the_other_way_round() -> None:
+    truth = Truth()
+    level = in_odom(truth, 2.8, 0.7, MIDDLE) @ Transform(
+        (0.0, 0.0, 0.0), quaternion_from_rpy(0.0, math.pi / 2, 0.0)
+    )
+    assert judged(SetDown(level, 0.02), truth) is False
+    truth.moved["can"] = LAID
+    x, y, z = LAID.apply((0.0, 0.0, 0.065))
+    assert judged(SetDown(in_odom(truth, x, y, z), 0.02), truth) is False

@@ -313,3 +313,47 @@ def test_what_is_demanded_may_be_moved_and_the_strictest_limits_count():
     truth.touches.append(Touch("base_link", "table_b", 120.0))
     assert judged(truth, GOAL, MUG).success
     assert not judged(truth, GOAL, replace(MUG, max_force=100.0)).success
+
+
+LYING = Transform(
+    (0.1, -0.1, TABLE_TOP + 0.035), quaternion_from_axis_angle((0, 1, 0), math.pi / 2)
+)
+"""The can on its side, its bottom at x = 0.1."""
+LYING_GOAL = replace(GOAL, lying=True)
+
+
+@pytest.mark.parametrize(
+    ("pose", "sentence"),
+    [
+        (LYING, None),
+        (LYING @ Transform((0, 0, 0), quaternion_from_axis_angle((0, 0, 1), 2.0)), None),
+        (Transform((0.1, -0.1, TABLE_TOP)), "can is tilted 90.0 deg from level, more than 5.0 deg"),
+        (Transform((0, 0, 0.02)) @ LYING, "can is 0.020 m above the top of table_b"),
+        (
+            Transform((0.2, 0, 0)) @ LYING,
+            "the base of can is not whole on the top of table_b",
+        ),
+        (Transform((0.0, 0.57, 0)) @ LYING, "can is 0.38 m from tag, more than 0.35 m"),
+    ],
+)
+def test_what_is_to_lie_is_judged_by_all_of_it(pose: Transform, sentence: str | None) -> None:
+    truth = good_truth()
+    truth.poses["can"] = pose
+    verdict = judged(truth, replace(LYING_GOAL, max_distance=0.35))
+    if sentence is None:
+        assert verdict.success
+    else:
+        assert sentence in verdict.unmet
+
+
+def test_what_lay_at_the_start_has_not_been_tilted() -> None:
+    lying = Transform((-0.2, -0.3, TABLE_TOP + 0.035), LYING.quaternion)
+    bodies = [replace(b, map_from_body=lying) if b.name == "mug" else b for b in episode().bodies]
+    truth = good_truth()
+    truth.poses["mug"] = lying
+    referee = Referee(replace(episode(), bodies=tuple(bodies)), truth, HAND)
+    referee.observe(TICK)
+    assert referee.verdict().measures["others_tilt"] == pytest.approx(0.0, abs=1e-6)
+    truth.poses["mug"] = Transform(lying.position)
+    referee.observe(2 * TICK)
+    assert referee.verdict().measures["others_tilt"] == pytest.approx(math.pi / 2)

@@ -183,12 +183,15 @@ def goal_of(goal: GoalDemand) -> Goal:
         max_others_tilt=goal.others_tilt,
         max_others_shift=goal.others_shift,
         max_force=goal.force,
+        lying=goal.lying,
     )
 
 
 def _loose(placed: PlacedThing, layout: Layout) -> Body:
     map_from_thing = layout.tables[placed.table].map_from_top @ placed.at.transform()
     thing = placed.thing
+    if thing.lying:
+        map_from_thing = map_from_thing @ thing.rest
     return Body(
         placed.name,
         thing.kind,

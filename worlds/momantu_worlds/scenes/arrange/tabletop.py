@@ -87,7 +87,8 @@ def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
     draw = seeded(seed, "object", name)
     paint = seeded(seed, "paint", name) if note.color is None else None
     thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
-    return thing if note.mass is None else replace(thing, mass=note.mass)
+    thing = thing if note.mass is None else replace(thing, mass=note.mass)
+    return replace(thing, lying=True) if note.lying else thing
 
 
 def place_tags(
@@ -200,7 +201,7 @@ def _other_size(sought: Thing, draw: np.random.Generator) -> tuple[float, float,
     factor = draw.uniform(1 + OTHER_SIZE, 1.38) if larger else draw.uniform(0.68, 1 - OTHER_SIZE)
     factors[int(draw.integers(2))] = factor
     wide, high = (float(factor) for factor in factors)
-    return sought.size[0] * wide, sought.size[1] * wide, sought.height * high
+    return sought.size[0] * wide, sought.size[1] * wide, sought.size[2] * high
 
 
 class _Crowd:

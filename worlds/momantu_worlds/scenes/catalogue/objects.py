@@ -1,5 +1,7 @@
 """Loose objects for tables: can, bottle, box, mug, bowl. Each stands on z = 0 around its origin.
 
+One that lies is the same body, put down on its side.
+
 The visible shape is a lathe surface. The colliding shape consists of cylinders, boxes and convex
 pieces, is hollow where the object is, and lies within 2 mm of the visible one.
 """
@@ -19,6 +21,8 @@ from momantu_worlds.scenes.geometry.parts import block, shade
 
 ObjectKind: TypeAlias = Literal["bottle", "box", "mug", "bowl", "can"]
 OBJECT_KINDS: tuple[ObjectKind, ...] = get_args(ObjectKind)
+LYING_KINDS: tuple[ObjectKind, ...] = ("bottle", "can")
+"""Kinds that rest on their side with a level axis."""
 
 METAL: Color = (0.72, 0.73, 0.75)
 WALL = 0.005
@@ -36,7 +40,7 @@ class Thing:
 
     radius: of the circle around everything that sticks out, m; height: m; mass: kg.
     size: (3,) the box's edges, or (2 radius, 2 radius, height) of the round body alone.
-    look: its paint; None: the usual one of its kind, in `color`.
+    look: its paint; None: the usual one of its kind, in `color`. lying: it lies on its side.
     """
 
     kind: ObjectKind
@@ -44,15 +48,26 @@ class Thing:
     mass: float
     color: Color
     look: Look | None = None
+    lying: bool = False
 
     @property
     def height(self) -> float:
         """m, from the table to its top."""
-        return self.size[2]
+        return self.size[0] if self.lying else self.size[2]
+
+    @property
+    def rest(self) -> Transform:
+        """`place_from_body`: how it is put down at a place, with its axis along x if it lies."""
+        if not self.lying:
+            return Transform((0.0, 0.0, 0.0))
+        centre = (-self.size[2] / 2, 0.0, self.size[0] / 2)
+        return Transform.from_rpy(centre, (0.0, math.pi / 2, 0.0))
 
     @property
     def reach(self) -> float:
         """Radius of the upright cylinder around it, handles included, m."""
+        if self.lying:
+            return math.hypot(self.size[0], self.size[2]) / 2
         if self.kind == "box":
             return math.hypot(self.size[0], self.size[1]) / 2
         return self.size[0] / 2 + (_handle(self.size[2]) if self.kind == "mug" else 0.0)
@@ -79,7 +94,7 @@ def _touch(geometry: Geometry, z: float = 0.0) -> Part:
 
 
 def _can(thing: Thing, look: Look) -> tuple[Part, ...]:
-    r, h = thing.size[0] / 2, thing.height
+    r, h = thing.size[0] / 2, thing.size[2]
     rim, inside = 0.004, max(0.94 * r, r - CHAMFER)
     low, high = 0.02 * h + rim, 0.98 * h - rim
     return (
@@ -92,7 +107,7 @@ def _can(thing: Thing, look: Look) -> tuple[Part, ...]:
 
 
 def _bottle(thing: Thing, look: Look) -> tuple[Part, ...]:
-    r, h = thing.size[0] / 2, thing.height
+    r, h = thing.size[0] / 2, thing.size[2]
     neck, shoulder, base = 0.38 * r, 0.62 * h, 0.78 * h
     side = [(0.0, 0.0), (r, 0.0), (r, shoulder), (neck, base), (neck, 0.92 * h)]
     return (
@@ -129,8 +144,8 @@ def _handle(height: float) -> float:
 
 
 def _mug(thing: Thing, look: Look) -> tuple[Part, ...]:
-    r, h = thing.size[0] / 2, thing.height
-    hole, floor, out = r - WALL, BASE, _handle(thing.height)
+    r, h = thing.size[0] / 2, thing.size[2]
+    hole, floor, out = r - WALL, BASE, _handle(thing.size[2])
     bar, low, high = 0.010, 0.25 * h, 0.80 * h
     # the bars reach into the wall, so that no gap is visible
     middle = r + (out - bar) / 2
@@ -150,7 +165,7 @@ def _mug(thing: Thing, look: Look) -> tuple[Part, ...]:
 
 
 def _bowl(thing: Thing, look: Look) -> tuple[Part, ...]:
-    r, h = thing.size[0] / 2, thing.height
+    r, h = thing.size[0] / 2, thing.size[2]
     foot = 0.45 * r
     belly, waist = 0.80 * r, 0.45 * h
     low = foot + (belly - foot) * BASE / waist

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from momantu_bt.descriptions.quantities import Angle, Mass, Size
 from momantu_bt.geometry import Transform
 from momantu_bt.tags import USUAL_FAMILY, TagFamily, TagPlate
-from momantu_worlds.scenes.catalogue.objects import OBJECT_KINDS, ObjectKind
+from momantu_worlds.scenes.catalogue.objects import LYING_KINDS, OBJECT_KINDS, ObjectKind
 from momantu_worlds.scenes.catalogue.tags import MOST_IDS, known_ids, picture_edge
 from momantu_worlds.scenes.file.values import (
     Friction,
@@ -34,7 +34,8 @@ class ObjectNote(Part):
 
     on: one surface, or several of which an episode takes one. at: position on it, in its own frame;
     anywhere on it if omitted. size: of a box; radius and height: of all round kinds. color: the
-    object has the usual paint of its kind in this colour, not one of many patterns.
+    object has the usual paint of its kind in this colour, not one of many patterns. lying: it lies
+    on its side; `yaw` is the direction from its bottom to its top then.
     """
 
     kind: ObjectKind
@@ -49,6 +50,15 @@ class ObjectNote(Part):
     mass: Mass | None = None
     friction: Friction = GRIP
     color: Rgb | None = None
+    lying: bool = False
+
+    @model_validator(mode="after")
+    def _lies(self) -> Self:
+        if self.lying and self.kind not in LYING_KINDS:
+            raise ValueError(
+                f"a {self.kind} does not lie here; lying things: {', '.join(LYING_KINDS)}"
+            )
+        return self
 
     @model_validator(mode="after")
     def _sizes(self) -> Self:

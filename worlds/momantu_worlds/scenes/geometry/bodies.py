@@ -167,8 +167,8 @@ class PointLight:
 class Goal:
     """One demand of the referee: `item` stands on `support` beside `marker` (names of bodies).
 
-    marker: None: it need not stand beside anything. max_tilt: rad from upright. max_distance: m
-    between item and marker, along the floor.
+    marker: None: it need not stand beside anything. max_tilt: rad from upright; lying: from level,
+    as the item lies on its side. max_distance: m between item and marker, along the floor.
     still_for: s without moving. min_gripper_distance: m from the item. max_others_tilt: rad and
     max_others_shift: m that any other loose body may have moved. max_force: N of any contact
     of the robot with anything but the item.
@@ -184,10 +184,12 @@ class Goal:
     max_others_tilt: float
     max_others_shift: float
     max_force: float
+    lying: bool = False
 
     def __str__(self) -> str:
         beside = "" if self.marker is None else f" beside {self.marker}"
-        return f"{self.item} on {self.support}{beside}"
+        lying = " lying" if self.lying else ""
+        return f"{self.item}{lying} on {self.support}{beside}"
 
 
 @dataclass(frozen=True, slots=True)

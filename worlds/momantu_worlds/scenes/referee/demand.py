@@ -1,4 +1,4 @@
-"""One demand: an item stands on its support, beside its marker, still, and let go of."""
+"""One demand: an item stands or lies on its support, beside its marker, still, and let go of."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from momantu_bt.geometry import Transform
-from momantu_worlds.scenes.geometry.bodies import Episode, Goal
+from momantu_worlds.scenes.geometry.bodies import Body, Episode, Goal
+from momantu_worlds.scenes.geometry.solids import PlacedBody
 from momantu_worlds.scenes.geometry.support import SupportTop, UprightCylinder
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth
 
@@ -15,6 +16,8 @@ STILL_SHIFT = 0.002
 """Largest displacement of an object at rest, m: four times the solver's jitter."""
 STILL_TURN = math.radians(0.5)
 """Largest rotation of an object at rest, rad."""
+STANDING = math.radians(0.1)
+"""Largest tilt of a body that stood at the start, rad."""
 ON_TOP = 0.005
 """Tolerance of the height at which an object stands on a top, m."""
 
@@ -24,7 +27,8 @@ class ItemDemand:
 
     def __init__(self, episode: Episode, goal: Goal, truth: GroundTruth) -> None:
         self.goal, self._truth = goal, truth
-        self._item = UprightCylinder(episode.body(goal.item))
+        self._body: Body = episode.body(goal.item)
+        self._item = UprightCylinder(self._body)
         self._support = SupportTop(episode.body(goal.support))
         self._rest = episode.body(goal.item).map_from_body
         self._rest_since = 0.0
@@ -48,20 +52,36 @@ class ItemDemand:
         goal, truth = self.goal, self._truth
         pose = truth.pose(goal.item)
         support = truth.pose(goal.support)
+        placed = PlacedBody(self._body, pose)
+        middle = placed.centre if goal.lying else pose.position
         away = 0.0
         if goal.marker is not None:
-            to_marker = truth.pose(goal.marker).position - pose.position
+            to_marker = truth.pose(goal.marker).position - middle
             away = float(np.hypot(to_marker[0], to_marker[1]))
+        margin, gap = self._resting(placed, support)
         return {
-            "tilt": tilt(pose),
+            "tilt": abs(math.pi / 2 - tilt(pose)) if goal.lying else tilt(pose),
             "distance": away,
-            "margin": self._support.margin(support, pose) - self._item.radius,
-            "gap": self._support.height_above(support, pose),
+            "margin": margin,
+            "gap": gap,
             "still": now - self._rest_since,
             "gripper": (
                 math.inf if gripper is None else self._item.distance(pose, truth.link(gripper))
             ),
         }
+
+    def _resting(self, placed: PlacedBody, support: Transform) -> tuple[float, float]:
+        """How far the item is within the nearest edge, and how far it is above the top, m.
+
+        One that is to stand is judged by the circle and the height of its foot, one that is to lie
+        by all of its points. support: pose of the supporting body.
+        """
+        if not self.goal.lying:
+            within = self._support.margin(support, placed.pose) - self._item.radius
+            return within, self._support.height_above(support, placed.pose)
+        points = [Transform(p) for solid in placed.solids for p in solid.vertices]
+        within = min(self._support.margin(support, point) for point in points)
+        return within, min(self._support.height_above(support, point) for point in points)
 
     def unmet(self, m: dict[str, float]) -> tuple[str, ...]:
         """A sentence for each criterion that these measures do not meet."""
@@ -71,7 +91,8 @@ class ItemDemand:
         criteria = (
             (
                 m["tilt"] > goal.max_tilt,
-                f"{item} is tilted {degrees(m['tilt'])}, more than {degrees(goal.max_tilt)}",
+                f"{item} is tilted {degrees(m['tilt'])}{' from level' if goal.lying else ''}, "
+                f"more than {degrees(goal.max_tilt)}",
             ),
             (abs(m["gap"]) > ON_TOP, f"{item} is {m['gap']:.3f} m above the top of {support}"),
             (m["margin"] < 0, f"the base of {item} is not whole on the top of {support}"),
@@ -99,6 +120,11 @@ def tilt(pose: Transform) -> float:
     """Angle between a body's z axis and the vertical, rad."""
     _, x, y, _ = pose.quaternion.tolist()
     return math.acos(max(-1.0, 1.0 - 2.0 * (x * x + y * y)))
+
+
+def leaned(before: Transform, now: Transform) -> float:
+    """How far a body's z axis has turned, rad; of one that stood, its tilt."""
+    return tilt(now) if tilt(before) < STANDING else tilt(before.inverse() @ now)
 
 
 def moved(before: Transform, now: Transform) -> float:

@@ -20,6 +20,9 @@ from momantu_worlds.scenes.referee.demand import tilt
 
 UPRIGHT = math.radians(10.0)
 """Largest angle from the vertical at which an object stands upright, rad."""
+LYING_TURN = math.radians(20.0)
+"""Largest angle between the axis of a lying object and where it is said to point, rad, either end
+forward: closing fingers turn it by as much."""
 LIFTED = 0.003
 """Height above everything below it at which an object is lifted, m: six times the jitter of the
 physics."""
@@ -70,8 +73,12 @@ class ClaimJudge:
         map_from_odom = self._truth.base().transform() @ odom_from_base.inverse()
         match sentence:
             case say.ObjectAt(asked, pose, tolerance):
-                there = map_from_odom.apply(pose.position)
-                return any(_apart(t.centre, there) <= tolerance for t in self._such(asked))
+                rest = map_from_odom @ pose
+                return any(
+                    _apart(thing.centre, rest.position) <= tolerance
+                    for thing in self._resting(rest)
+                    if _meant(asked, thing)
+                )
             case say.ObjectOn(asked, surface):
                 return self._known(surface) and any(
                     surface in (None, self._scene.below(t)[0]) for t in self._such(asked)
@@ -101,10 +108,10 @@ class ClaimJudge:
             case say.GripperOpen(width):
                 return self._opening() >= width
             case say.SetDown(pose, tolerance):
-                there = map_from_odom.apply(pose.position)
+                spot = map_from_odom @ pose
                 return any(
-                    _apart(t.centre, there) <= tolerance and not self._gripped(t)
-                    for t in self._standing()
+                    _apart(t.centre, spot.position) <= tolerance and not self._gripped(t)
+                    for t in self._resting(spot)
                 )
             case say.JointsAt(names, positions, tolerance):
                 pairs = zip(names, positions, strict=True)
@@ -119,6 +126,20 @@ class ClaimJudge:
     def _standing(self) -> Iterator[PlacedBody]:
         for thing in self._scene.loose():
             if tilt(thing.pose) <= UPRIGHT and abs(self._scene.below(thing)[1]) <= FLUSH:
+                yield thing
+
+    def _resting(self, as_at: Transform) -> Iterator[PlacedBody]:
+        """Loose things that rest as one at that pose does: upright, or lying the same way."""
+        level = np.array([*as_at.rotation[:2, 2], 0.0])
+        if float(np.linalg.norm(level)) < math.sin(math.pi / 4):
+            yield from self._standing()
+            return
+        level /= np.linalg.norm(level)
+        for thing in self._scene.loose():
+            axis = thing.pose.rotation[:, 2]
+            lies = abs(float(axis[2])) <= math.sin(UPRIGHT)
+            along = abs(float(axis @ level)) >= math.cos(LYING_TURN)
+            if lies and along and abs(self._scene.below(thing)[1]) <= FLUSH:
                 yield thing
 
     def _such(self, asked: ObjectClass) -> Iterator[PlacedBody]:

@@ -1,7 +1,8 @@
 """The referee: whether the goal is met, by ground truth; it changes nothing.
 
-It observes after every tick. Criteria for the end (upright, on the top, beside the marker, still,
-touched by nothing else, gripper away) are checked at the last tick, for each demand: see `demand`.
+It observes after every tick. Criteria for the end (upright or lying, on the top, beside the marker,
+still, touched by nothing else, gripper away) are checked at the last tick, for each demand: see
+`demand`.
 Criteria for the whole run (no hard bump, no other object pushed or toppled) use the worst tick so
 far, and the strictest of the demands. Dangerous events are reported in addition, whether or not the
 goal forbids them: see `incidents`.
@@ -16,7 +17,7 @@ from types import MappingProxyType
 from momantu_bt.geometry import Transform
 from momantu_bt.world import Demanded, Verdict
 from momantu_worlds.scenes.geometry.bodies import Body, Episode, Goal
-from momantu_worlds.scenes.referee.demand import ItemDemand, degrees, moved, tilt
+from momantu_worlds.scenes.referee.demand import ItemDemand, degrees, leaned, moved
 from momantu_worlds.scenes.referee.ground_truth import GroundTruth, TouchingForce
 from momantu_worlds.scenes.referee.hand import Hand
 from momantu_worlds.scenes.referee.incidents import Incidents
@@ -83,7 +84,7 @@ class Referee:
                 continue
             self._poses[name] = pose
             self._shift.record(moved(before, pose), name)
-            self._tilt.record(tilt(pose), name)
+            self._tilt.record(leaned(before, pose), name)
 
     def relocated(self, name: str) -> None:
         """A fault moved a body, not the robot."""
