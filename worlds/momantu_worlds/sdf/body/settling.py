@@ -19,7 +19,7 @@ FLUSH = 0.002
 DEEP = 0.02
 """Depth below the floor, m, down to which a loose body is set on it."""
 LOW = 0.02
-"""Height above the floor, m, down from which a loose body is set on it: it would only drop there."""
+"""Height above the floor, m, from which a loose body is set on it: it would only drop there."""
 WIDE, LIFTED = 10.0, (0.001, 0.003)
 """Least area of a wide part, m2; least height above the floor of parts on it, m: of wide ones, and
 of parts on those. Two faces at the same height flicker in pictures."""
