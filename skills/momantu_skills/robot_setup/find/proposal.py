@@ -12,6 +12,7 @@ from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.arms import Limbs, find_limbs, own_chain
 from momantu_skills.robot_setup.find.base import BaseFrame, Stand, find_base, find_stand, planar
+from momantu_skills.robot_setup.find.cameras import OPTICAL_FROM_LINK, best_first
 from momantu_skills.robot_setup.find.fingers import find_hands
 from momantu_skills.robot_setup.find.grasp import Grasp, find_grasp
 from momantu_skills.robot_setup.find.limits import FoundLimit, find_limits, plain_limits
@@ -27,8 +28,6 @@ from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Given, Placed, Prepared, prepare
 from momantu_skills.robot_setup.urdf.simulated import pressing
 
-OPTICAL_FROM_LINK = Transform.from_rpy((0.0, 0.0, 0.0), (-math.pi / 2, 0.0, -math.pi / 2))
-"""An optical frame on a link whose x looks ahead and whose z is up."""
 TALLEST = 0.05
 """m to which the robot's height is rounded up."""
 
@@ -82,8 +81,10 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
     base = find_base(skeleton)
     body = Body(skeleton, Placed(prepared.urdf, base.frame))
     stand = find_stand(body)
-    sensors = find_sensors(prepared.document, skeleton, set(skeleton.subtree(base.frame)))
     hands = find_hands(body)
+    sensors = best_first(
+        body, find_sensors(prepared.document, skeleton, set(skeleton.subtree(base.frame))), hands
+    )
     camera = next((sensor for sensor in sensors if sensor.kind == "camera"), None)
     eye = None if camera is None else camera.link
     limbs = find_limbs(body, hands, eye, stand.wheels)
