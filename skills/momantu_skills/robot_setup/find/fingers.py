@@ -149,13 +149,52 @@ def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None
         return float(np.linalg.norm(tips - tips.mean(axis=0), axis=1).sum())
 
     leaders: dict[str, tuple[float, float]] = {}
+    changes: dict[str, float] = {}
     for name, (low, high) in ranges.items():
         near, far = low + 0.4 * (high - low), low + 0.6 * (high - low)
         change = spread({**middle, name: far}) - spread({**middle, name: near})
         if abs(change) > 1e-4:
             leaders[name] = (high, low) if change > 0 else (low, high)
-    if not leaders:
-        return None
+            changes[name] = abs(change)
+    first = _one_each(body, branches, leaders, changes)
+    for some in (first, leaders) if len(first) < len(leaders) else (leaders,):
+        hand = _closing(body, link, branches, some) if some else None
+        if hand is not None:
+            return hand
+    return None
+
+
+def _one_each(
+    body: Body,
+    branches: tuple[Branch, ...],
+    leaders: dict[str, tuple[float, float]],
+    changes: dict[str, float],
+) -> dict[str, tuple[float, float]]:
+    """Of several joints in one finger, the one that closes it most.
+
+    The tip of a finger with a motor in its knuckle alone hangs on a spring: in free space it stays
+    straight, and the finger bends about what it holds. A robot's file may say more (`linkages`).
+    """
+    best = {}
+    for name in leaders:
+        moved = tuple(b.joint for b in branches if _moves(body, name, b))
+        best[moved] = max(best.get(moved, name), name, key=lambda each: changes[each])
+    return {name: ends for name, ends in leaders.items() if name in best.values()}
+
+
+def _moves(body: Body, name: str, branch: Branch) -> bool:
+    """Whether a free joint, or one that follows it, moves a finger."""
+    joints = (body.skeleton.above(link) for link in branch.links)
+    return any(
+        joint is not None and name in (joint.name, joint.mimic and joint.mimic.leader)
+        for joint in joints
+    )
+
+
+def _closing(
+    body: Body, link: str, branches: tuple[Branch, ...], leaders: dict[str, tuple[float, float]]
+) -> Hand | None:
+    """The hand, if these joints close it."""
     # of a linkage, the pieces that hang on most joints hold; the others only guide them
     depth = {b: sum(j.moving for j in body.skeleton.chain(b.tip[0])) for b in branches}
     for some in (tuple(b for b in branches if depth[b] == max(depth.values())), branches):
