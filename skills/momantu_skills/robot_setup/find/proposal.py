@@ -11,7 +11,14 @@ from pathlib import Path
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.arms import Limbs, find_limbs, own_chain
-from momantu_skills.robot_setup.find.base import BaseFrame, Stand, find_base, find_stand, planar
+from momantu_skills.robot_setup.find.base import (
+    ABOVE,
+    BaseFrame,
+    Stand,
+    find_base,
+    find_stand,
+    planar,
+)
 from momantu_skills.robot_setup.find.cameras import OPTICAL_FROM_LINK, best_first
 from momantu_skills.robot_setup.find.fingers import find_hands
 from momantu_skills.robot_setup.find.grasp import Grasp, find_grasp
@@ -26,7 +33,7 @@ from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Given, Placed, Prepared, prepare
-from momantu_skills.robot_setup.urdf.simulated import pressing
+from momantu_skills.robot_setup.urdf.simulated import hollow, pressing
 
 TALLEST = 0.05
 """m to which the robot's height is rounded up."""
@@ -205,10 +212,10 @@ def _poses(
 def _cells(
     body: Body, poses: dict[str, FoundPose], matrix: CollisionMatrix
 ) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Cuts of long links whose hull other links lie in."""
+    """Cuts of long links whose hull other links lie in, or whose hull fills hollows of theirs."""
     postures = {name: pose.joints for name, pose in poses.items()}
-    found = swallowed(body, postures, matrix.ignored)
-    return {link: cuts_of(body, link) for link in dict.fromkeys(long for _, _, long in found)}
+    found = [long for _, _, long in swallowed(body, postures, matrix.ignored)]
+    return {link: cuts_of(body, link) for link in dict.fromkeys((*found, *hollow(body, ABOVE)))}
 
 
 def _pressing(
