@@ -38,6 +38,8 @@ HIDDEN = 0.4
 """Share of the object's corners that is hidden if the robot cannot tell how the object stands."""
 BESIDE = 0.02
 """Largest distance from its spot at which the object counts as placed, m."""
+SEEN = 0.01
+"""Distance from the spot, m, beyond which what is seen there is believed: more than its error."""
 
 
 class Place(Skill):
@@ -227,7 +229,7 @@ class Place(Skill):
         found = verification.beside(new, pose, held.object, bottom, rims.held_by_rim(held))
         if found is None:
             return verification.standing(arm.scene.points, pose, held.object, bottom)
-        if float(np.linalg.norm(found.position - pose.position)) > BESIDE:
+        if float(np.linalg.norm(found.position - pose.position)) > SEEN:
             self._spot = found
         return "upright"
 
