@@ -128,3 +128,18 @@ def test_a_bench_with_a_back_is_a_seat_and_a_workbench_a_table(imported, box, na
     model = f"<model name='{name}'><static>1</static><link name='l'>{inside}</link></model>"
     found = imported(GROUND + box("far", "1 1 1", "4 0 0.5 0 0 0") + model)
     assert (name in found.world.site.surfaces) == is_table
+
+
+@pytest.mark.parametrize(("into", "still"), [(0.01, False), (0.08, True)])
+def test_what_begins_deep_in_a_wall_stays_there(imported, box, into, still):
+    wall = box("wall", "1 0.1 2", f"-0.1 {0.3 + 0.05 + 0.03 - into} 1 0 0 0")
+    found = imported(GROUND + wall + CAN.format(0.05))
+    can = bodies(found)["can"]
+    assert can.still == still
+    said = [f.what for f in found.deviations if "in wall" in f.what]
+    assert said == ([f"it begins {into:.3f} m in wall/link"] if still else [])
+
+
+def test_what_lies_on_a_table_is_not_wedged(imported, box):
+    found = imported(GROUND + box("b", "1 1 0.7", "-0.1 0.3 0.35 0 0 0") + CAN.format(0.745))
+    assert not bodies(found)["can"].still
