@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from momantu_bt.robots.packages import Packages
+from momantu_bt.robots.packages import SCHEME, Packages
 from momantu_bt.robots.parts import LoadedPart, line_of
 
 MESHES = "MOMANTU_BT_MESHES"
@@ -77,18 +77,37 @@ class Located:
 
 
 def locate_meshes(part: LoadedPart) -> Located:
-    """Look up every mesh of a part."""
+    """Look up every mesh of a part. The meshes of one missing package are one sentence."""
     found: dict[str, Path] = {}
-    missing = []
+    missing: list[str] = []
+    lost: dict[str, dict[str, str]] = {}
     for mesh in part.root.findall("link/*/geometry/mesh"):
         name = str(mesh.get("filename", ""))
         path = part.packages.mesh(name)
+        where = part.where(line_of(mesh))
         if path is not None:
             found[name] = path.resolve()
-            continue
-        where = part.where(line_of(mesh))
-        missing.append(f"{where}: the mesh {name!r} is missing; {_looked(name, part.packages)}")
-    return Located(found, tuple(missing))
+        elif package := _lost_package(name, part.packages):
+            lost.setdefault(package, {}).setdefault(name, where)
+        else:
+            missing.append(f"{where}: the mesh {name!r} is missing; {_looked(name, part.packages)}")
+    every = (_lost(package, names, part.packages) for package, names in lost.items())
+    return Located(found, (*missing, *every))
+
+
+def _lost(package: str, places: Mapping[str, str], packages: Packages) -> str:
+    """A sentence about a missing package. places: where each of its meshes is named."""
+    first, *others = places
+    which = f"the mesh {first!r} is missing"
+    if others:
+        which = f"{len(places)} meshes are missing, the first {first!r}"
+    return f"{places[first]}: {which}; there is no package {package!r}: {packages.searched()}"
+
+
+def _lost_package(name: str, packages: Packages) -> str:
+    """The package that a mesh's address names, if it cannot be found; else nothing."""
+    package = name.removeprefix(SCHEME).partition("/")[0]
+    return package if name.startswith(SCHEME) and packages.find(package) is None else ""
 
 
 def write_paths(part: LoadedPart, found: Mapping[str, Path]) -> None:
@@ -114,8 +133,5 @@ def textures(part: LoadedPart) -> list[etree._Element]:
 
 def _looked(name: str, packages: Packages) -> str:
     """Where a mesh was looked for."""
-    package = name.removeprefix("package://").partition("/")[0]
-    if name.startswith("package://") and packages.find(package) is None:
-        return f"there is no package {package!r}: {packages.searched()}"
     looked = list(dict.fromkeys(packages.mesh_candidates(name)))[:PLACES]
     return f"looked for {', '.join(str(each) for each in looked)}"

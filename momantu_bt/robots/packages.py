@@ -15,8 +15,9 @@ MESH_SUFFIXES = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply")
 """Suffixes of mesh files."""
 UP = 3
 """Folders above a file's own package in which its neighbours are looked for."""
+SCHEME = "package://"
+"""What a mesh's address in a package begins with."""
 _NAME = re.compile(r"<name>\s*([\w.-]+)\s*</name>")
-_SCHEME = "package://"
 
 
 class Packages:
@@ -57,13 +58,13 @@ class Packages:
     def mesh_candidates(self, address: str) -> Iterator[Path]:
         """Where the file of a mesh's address may lie, the best place first."""
         plain = address.removeprefix("file://")
-        if not plain.startswith(_SCHEME):
+        if not plain.startswith(SCHEME):
             yield self.path.parent / plain
             yield self.folder / plain
             if not Path(plain).is_absolute():
                 yield from (parent / plain for parent in self.path.parents)
             return
-        plain = plain.removeprefix(_SCHEME).lstrip("/")
+        plain = plain.removeprefix(SCHEME).lstrip("/")
         package, _, inside = plain.partition("/")
         for root in (self.path.parent, self.folder):
             yield root / plain

@@ -20,6 +20,7 @@ from momantu_bt.formats.places import KeyPath
 from momantu_bt.lazy import lazily
 from momantu_bt.robots.errors import PartError
 from momantu_bt.robots.packages import Packages
+from momantu_bt.robots.xacro_packages import missing_packages
 
 with lazily():
     import xacro
@@ -49,10 +50,21 @@ def expand(
         except Exception as error:  # expressions of the file may raise anything
             told = (xacro.XacroException, xml.parsers.expat.ExpatError, OSError)
             words = str(error) if isinstance(error, told) else f"{type(error).__name__}: {error}"
-            words = missing[-1] if missing else words
+            words = _with_others(missing[-1], path, packages) if missing else words
             raise PartError(place, _said(path, words, xacro.filestack)) from None
         included = tuple(dict.fromkeys(Path(str(each)) for each in xacro.all_includes))
     return document.toxml().encode(), included
+
+
+def _with_others(words: str, path: Path, packages: Packages) -> str:
+    """A sentence about a missing package, and after it the others that will be asked for."""
+    every = missing_packages(path, packages)
+    if len(every) < 2:
+        return words
+    return (
+        f"{words}. {len(every)} packages that the file and its includes name cannot be found: "
+        f"{', '.join(every)}; its arguments decide which of them are used"
+    )
 
 
 def _argument(value: object) -> str:

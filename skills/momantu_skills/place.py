@@ -45,6 +45,8 @@ HIDDEN = 0.4
 """Share of the object's corners that is hidden if the robot cannot tell how the object stands."""
 BESIDE = 0.02
 """Largest distance from its spot at which the object counts as placed, m."""
+SEEN = 0.01
+"""Distance from the spot, m, beyond which what is seen there is believed: more than its error."""
 
 
 class Place(Skill):
@@ -242,7 +244,7 @@ class Place(Skill):
             return lying_down.at(points, pose, thing, bottom)
         if found is None:
             return verification.standing(points, pose, thing, bottom)
-        if lying or float(np.linalg.norm(found.position - pose.position)) > BESIDE:
+        if lying or float(np.linalg.norm(found.position - pose.position)) > SEEN:
             self._spot = found
         return "there"
 

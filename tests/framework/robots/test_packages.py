@@ -117,3 +117,29 @@ def test_a_robot_file_names_folders_of_packages(arm: Path, tmp_path: Path) -> No
     (there / "x.obj").unlink()
     with pytest.raises(RobotFileError, match=r"x\.obj' is missing; looked for"):
         read_robot(mine)
+
+
+def test_the_meshes_of_a_missing_package_are_told_in_one_sentence(
+    arm: Path, tmp_path: Path
+) -> None:
+    shape = '<visual><geometry><mesh filename="package://{}"/></geometry></visual>'
+    package(tmp_path / "ws" / "src" / "arm_tools")
+    names = ("lost/a.stl", "lost/b.stl", "lost/a.stl", "arm_tools/c.stl", "other/d.stl")
+    arm.write_text(
+        f'<robot name="wall"><link name="base_link">{"".join(map(shape.format, names))}</link>'
+        "</robot>"
+    )
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "robot.yaml").write_text(
+        ROBOT.format(arm=arm, packages="")
+        .replace("xacro:", "urdf:")
+        .replace(", args: {mesh: package://base_description/x.stl}", "")
+    )
+    with pytest.raises(RobotFileError) as caught:
+        read_robot(mine)
+    said = str(caught.value)
+    assert said.count("there is no package 'lost'") == 1
+    assert "2 meshes are missing, the first 'package://lost/a.stl'" in said
+    assert "the mesh 'package://other/d.stl' is missing; there is no package 'other'" in said
+    assert "arm_tools/c.stl' is missing; looked for" in said

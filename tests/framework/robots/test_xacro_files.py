@@ -65,6 +65,34 @@ def test_what_xacro_objects_to_is_told_with_the_file(
         read_robot(carter(arm=(MACRO, inside + MACRO)))
 
 
+def test_all_missing_packages_are_told_at_once(carter: Write, tmp_path: Path) -> None:
+    more = tmp_path / "carter" / "more.xacro"
+    more.parent.mkdir(exist_ok=True)
+    more.write_text(
+        f"""<robot {NAMESPACE}><!-- $(find commented) -->
+        <xacro:include filename="$(find second)/x.xacro"/>
+        <xacro:include filename="more.xacro"/>
+        <xacro:include filename="${{anywhere}}/x.xacro"/></robot>"""
+    )
+    inside = (
+        '<xacro:include filename="$(find first)/x.xacro"/><xacro:include filename="more.xacro"/>'
+        '<xacro:property name="x" value="$(find xacro)"/>'
+    )
+    with pytest.raises(RobotFileError) as caught:
+        read_robot(carter(arm=(MACRO, inside + MACRO)))
+    assert "$(find first) is neither" in str(caught.value)
+    assert "2 packages" in str(caught.value)
+    assert "cannot be found: first, second;" in " ".join(str(caught.value).split())
+    assert "commented" not in str(caught.value)
+
+
+def test_one_missing_package_is_told_once(carter: Write) -> None:
+    inside = '<xacro:include filename="$(find first)/x.xacro"/>'
+    with pytest.raises(RobotFileError) as caught:
+        read_robot(carter(arm=(MACRO, inside + MACRO)))
+    assert "packages that the file" not in str(caught.value)
+
+
 def test_nothing_of_ros_stays_behind(carter: Write) -> None:
     read_robot(carter())
     with pytest.raises(RobotFileError):

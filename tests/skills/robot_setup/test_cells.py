@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from momantu_skills.robot_setup.find.proposal import propose
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Placed, prepare
-from momantu_skills.robot_setup.urdf.simulated import pressing
+from momantu_skills.robot_setup.urdf.simulated import hollow, pressing
 from momantu_worlds.robots import fetch
 from scipy.spatial import ConvexHull
 
@@ -92,3 +93,15 @@ def test_hulls_press_where_the_links_are_apart_until_the_mesh_is_cut(body: Body)
     assert pressing(body, [pair], {}, [{}]) == (pair,)
     assert pressing(body, [pair], {"c": cuts_of(body, "c")}, [{}]) == ()
     assert pressing(body, [pair], {"c": {"z": (0.12, 0.88)}}, []) == ()
+
+
+def test_a_long_mesh_with_a_hollow_is_cut_and_a_full_one_is_not(body: Body, tmp_path: Path) -> None:
+    assert list(hollow(body, -0.1)) == ["c"]
+    assert list(hollow(body, 0.25)) == []  # it stands on the floor, as a base does
+    (tmp_path / "full.stl").write_text(f"solid f\n{facets((0, 0, 0), (0.2, 0.2, 1))}endsolid f")
+    mesh = '<collision><geometry><mesh filename="full.stl"/></geometry></collision>'
+    (tmp_path / "full.urdf").write_text(
+        f'<robot name="full"><link name="base">{mesh}</link></robot>'
+    )
+    prepared = prepare(tmp_path / "full.urdf", tmp_path)
+    assert list(hollow(Body(prepared.skeleton, Placed(prepared.urdf, "base")), -0.1)) == []

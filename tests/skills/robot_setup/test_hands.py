@@ -328,3 +328,35 @@ def test_a_camera_on_the_palm_does_not_turn_the_grasp_frame(aside: str) -> None:
     _, grasp = only_hand(body)
     assert grasp.link_from_grasp is not None
     assert grasp.link_from_grasp.rotation[:, 0] == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("spreads", [False, True])
+def test_of_joints_in_a_row_the_knuckles_close_the_hand(spreads: bool) -> None:
+    """The tips stay straight, and joints that spread two fingers apart stay where they are."""
+    bend = 'lower="0" upper="1.2" velocity="1" effort="5"'
+    turn = 'lower="-0.2" upper="0.2" velocity="1" effort="5"'
+    fingers: list[str] = []
+    for name, x, y, axis in (("a", 0.05, 0.03, "0 -1 0"), ("b", 0.05, -0.03, "0 -1 0"),
+                             ("c", -0.05, 0.0, "0 1 0")):  # fmt: skip
+        root = "palm"
+        if spreads and name != "c":
+            root, away = f"{name}0", "0 0 1" if name == "a" else "0 0 -1"
+            fingers += [link(root, box(0.02, 0.02, 0.01), "0 0 0.005", 0.05)]
+            fingers += [joint(f"{name}_spread", "palm", root, f"{x} {y} 0.08", away, limit=turn)]
+        at = f"{x} {y} 0.08" if root == "palm" else "0 0 0.01"
+        fingers += [
+            link(f"{name}1", box(0.012, 0.02, 0.05), "0 0 0.025", 0.05),
+            link(f"{name}2", box(0.012, 0.02, 0.05), "0 0 0.025", 0.05),
+            joint(f"{name}_knuckle", root, f"{name}1", at, axis, limit=bend),
+            joint(f"{name}_tip", f"{name}1", f"{name}2", "0 0 0.05", axis, limit=bend),
+        ]
+    body = body_of(*palm(0.06), *fingers)
+    hand, grasp = only_hand(body)
+    assert set(hand.leaders) == {"a_knuckle", "b_knuckle", "c_knuckle"}
+    assert {frozenset(hand.ahead), frozenset(hand.behind)} == {
+        frozenset(["a2", "b2"]),
+        frozenset(["c2"]),
+    }
+    assert abs(hand.closing[0]) > 0.95
+    assert 0.07 < grasp.max_width < 0.1
+    assert hand.leaders["a_knuckle"][0] == 0.0

@@ -200,14 +200,3 @@ def test_what_measures_one_distance_ahead_is_no_scanner(on: str, swept: float) -
         "<min_angle>-0.2</min_angle><max_angle>0.2</max_angle></vertical></scan></ray>"
     )
     assert found(on, extra=written("ray", inside, on)) == []
-
-
-@pytest.mark.parametrize("depth", ["head_rgbd_sensor_camera", "kinect_camera", "camera_color_link"])
-def test_a_camera_with_depth_comes_before_the_eyes_of_a_stereo_camera(depth: str) -> None:
-    """Skills look with the first camera."""
-    eyes = ("head_l_stereo_camera", "head_r_stereo_camera", "wide_camera")
-    extra = "".join(written("camera", "", eye) for eye in (*eyes, depth))
-    cameras = found(*eyes, depth, extra=extra)
-    assert [camera.link for camera in cameras] == [depth, *eyes]
-    typed = "".join(written("depth" if eye == eyes[1] else "camera", "", eye) for eye in eyes)
-    assert found(*eyes, extra=typed)[0].link == eyes[1]

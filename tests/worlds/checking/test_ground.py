@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.checking.convex import convex
 from momantu_worlds.checking.ground import CELL, Ground, Obstacle, obstacle
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Part
+from momantu_worlds.scenes.geometry.convex import convex
 
 from momantu_bt.geometry import Transform
 

@@ -12,9 +12,9 @@ from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.formats.problems import Severity
 from momantu_bt.geometry import Array, Transform
-from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.scenario import Scenario
 from momantu_worlds.scenes.geometry.bodies import Body, Goal
+from momantu_worlds.scenes.geometry.convex import Convex, solids_of
 from momantu_worlds.scenes.geometry.solids import FLUSH
 from momantu_worlds.scenes.geometry.support import SupportTop
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
-from momantu_worlds.checking.convex import Convex
+from momantu_worlds.scenes.geometry.convex import Convex
 
 CELL = 0.02
 """Cell size of the grid, m; free spots are known to about 1.5 cm."""

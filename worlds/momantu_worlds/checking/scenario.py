@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.geometry import Array, Transform
-from momantu_worlds.checking.convex import Convex, solids_of
 from momantu_worlds.checking.ground import Ground, Obstacle, obstacle
 from momantu_worlds.checking.measures import Measures
 from momantu_worlds.scenes.geometry.bodies import Body, Episode
+from momantu_worlds.scenes.geometry.convex import Convex, solids_of
 from momantu_worlds.scenes.geometry.support import SupportTop
 
 MARGIN = 1.0

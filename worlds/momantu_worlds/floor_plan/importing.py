@@ -136,4 +136,6 @@ def _free_floor(free: np.ndarray, picture: MapPicture) -> FreeFloor:
     fits = (clearance > HALF_WIDTH).astype(np.uint8)
     _, regions = cv2.connectedComponents(fits, connectivity=4)
     walls = ~np.asarray(free, dtype=bool)
-    return FreeFloor(picture.origin, picture.resolution, clearance, np.asarray(regions), walls)
+    return FreeFloor(
+        picture.origin, picture.resolution, clearance, np.asarray(regions), walls, walls
+    )

@@ -20,6 +20,7 @@ from momantu_worlds.sdf.body.placing import placed_lights, placed_models
 from momantu_worlds.sdf.body.rigid_groups import is_robot, rigid_groups
 from momantu_worlds.sdf.body.settling import settled
 from momantu_worlds.sdf.body.shaping import Shaping
+from momantu_worlds.sdf.body.wedged import held_where_wedged
 from momantu_worlds.sdf.deviations import Deviations, Outcome
 from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.mesh.assets import Assets
@@ -97,7 +98,8 @@ def import_world(
         for group in rigid_groups(model, deviations)
         for body in maker.body(model, group)
     ]
-    bodies = _enough(list(settled(made, ground.height, deviations)), deviations)
+    standing = held_where_wedged(list(settled(made, ground.height, deviations)), deviations)
+    bodies = _enough(standing, deviations)
     if not bodies and (deviations.models_lost or not ground.shapes):
         raise SdfError(Place(str(file)), _nothing_left(deviations))
     light = lighting(

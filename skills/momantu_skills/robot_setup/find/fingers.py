@@ -141,6 +141,34 @@ def _joints_of(body: Body, link: str, branches: tuple[Branch, ...]) -> list[str]
 
 def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None:
     joints = _joints_of(body, link, branches)
+    found = [_closing(body, link, branches, some) for some in _one_each(body, branches, joints)]
+    hands = [hand for hand in found if hand is not None]
+    if not hands:
+        return _closing(body, link, branches, joints)
+    return max(hands, key=lambda hand: (len(hand.ahead) + len(hand.behind), hand.widths[0]))
+
+
+def _one_each(body: Body, branches: tuple[Branch, ...], joints: list[str]) -> list[list[str]]:
+    """Ways to close a hand by one of the joints that follow on each other in each finger.
+
+    The others stay at rest: the tip of a finger with a motor in its knuckle alone hangs on a
+    spring, which keeps it straight in free space, and some fingers also spread. The first way has
+    the last joint of each finger, the next those before them. No way for fingers of one joint.
+    """
+    depth = {n: len(body.skeleton.chain(body.skeleton.joints[n].child)) for n in joints}
+    chains = [[n for n in joints if _moves(body, n, branch)] for branch in branches]
+    chains = [sorted(chain, key=lambda n: -depth[n]) for chain in chains if chain]
+    ways = max(map(len, chains), default=0)
+    if ways < 2 or len({name for chain in chains for name in chain}) < sum(map(len, chains)):
+        return []
+    picked = [{chain[min(k, len(chain) - 1)] for chain in chains} for k in range(ways)]
+    return [[name for name in joints if name in some] for some in picked]
+
+
+def _leaders(
+    body: Body, branches: tuple[Branch, ...], joints: list[str]
+) -> dict[str, tuple[float, float]]:
+    """(open, closed) of those of some joints that bring the fingers together."""
     ranges = {name: _span(body, name) for name in joints}
     middle = {name: (low + high) / 2 for name, (low, high) in ranges.items()}
 
@@ -154,13 +182,28 @@ def _gripper(body: Body, link: str, branches: tuple[Branch, ...]) -> Hand | None
         change = spread({**middle, name: far}) - spread({**middle, name: near})
         if abs(change) > 1e-4:
             leaders[name] = (high, low) if change > 0 else (low, high)
+    return leaders
+
+
+def _moves(body: Body, name: str, branch: Branch) -> bool:
+    """Whether a free joint, or one that follows it, moves a finger."""
+    joints = (body.skeleton.above(link) for link in branch.links)
+    return any(
+        joint is not None and name in (joint.name, joint.mimic and joint.mimic.leader)
+        for joint in joints
+    )
+
+
+def _closing(body: Body, link: str, branches: tuple[Branch, ...], joints: list[str]) -> Hand | None:
+    """The hand, if these joints close it while the others stay at rest."""
+    leaders = _leaders(body, branches, joints)
     if not leaders:
         return None
     # of a linkage, the pieces that hang on most joints hold; the others only guide them
     depth = {b: sum(j.moving for j in body.skeleton.chain(b.tip[0])) for b in branches}
     for some in (tuple(b for b in branches if depth[b] == max(depth.values())), branches):
         closing, ahead, behind = _sides(body, link, some, leaders)
-        if behind:
+        if ahead and behind:
             return _measured(body, link, branches, leaders, closing, ahead, behind)
     return None
 

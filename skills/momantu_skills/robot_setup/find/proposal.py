@@ -11,7 +11,15 @@ from pathlib import Path
 from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.arms import Limbs, find_limbs, own_chain
-from momantu_skills.robot_setup.find.base import BaseFrame, Stand, find_base, find_stand, planar
+from momantu_skills.robot_setup.find.base import (
+    ABOVE,
+    BaseFrame,
+    Stand,
+    find_base,
+    find_stand,
+    planar,
+)
+from momantu_skills.robot_setup.find.cameras import OPTICAL_FROM_LINK, best_first
 from momantu_skills.robot_setup.find.fingers import find_hands
 from momantu_skills.robot_setup.find.grasp import Grasp, find_grasp
 from momantu_skills.robot_setup.find.limits import FoundLimit, find_limits, plain_limits
@@ -25,10 +33,8 @@ from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.cells import cuts_of, swallowed
 from momantu_skills.robot_setup.urdf.prepare import Given, Placed, Prepared, prepare
-from momantu_skills.robot_setup.urdf.simulated import pressing
+from momantu_skills.robot_setup.urdf.simulated import hollow, pressing
 
-OPTICAL_FROM_LINK = Transform.from_rpy((0.0, 0.0, 0.0), (-math.pi / 2, 0.0, -math.pi / 2))
-"""An optical frame on a link whose x looks ahead and whose z is up."""
 TALLEST = 0.05
 """m to which the robot's height is rounded up."""
 
@@ -82,8 +88,10 @@ def _propose(prepared: Prepared, samples: int, seed: int) -> Proposal:
     base = find_base(skeleton)
     body = Body(skeleton, Placed(prepared.urdf, base.frame))
     stand = find_stand(body)
-    sensors = find_sensors(prepared.document, skeleton, set(skeleton.subtree(base.frame)))
     hands = find_hands(body)
+    sensors = best_first(
+        body, find_sensors(prepared.document, skeleton, set(skeleton.subtree(base.frame))), hands
+    )
     camera = next((sensor for sensor in sensors if sensor.kind == "camera"), None)
     eye = None if camera is None else camera.link
     limbs = find_limbs(body, hands, eye, stand.wheels)
@@ -204,10 +212,10 @@ def _poses(
 def _cells(
     body: Body, poses: dict[str, FoundPose], matrix: CollisionMatrix
 ) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Cuts of long links whose hull other links lie in."""
+    """Cuts of long links whose hull other links lie in, or whose hull fills hollows of theirs."""
     postures = {name: pose.joints for name, pose in poses.items()}
-    found = swallowed(body, postures, matrix.ignored)
-    return {link: cuts_of(body, link) for link in dict.fromkeys(long for _, _, long in found)}
+    found = [long for _, _, long in swallowed(body, postures, matrix.ignored)]
+    return {link: cuts_of(body, link) for link in dict.fromkeys((*found, *hollow(body, ABOVE)))}
 
 
 def _pressing(

@@ -46,13 +46,6 @@ NARROW = 1.0
 PREFERRED = re.compile(r"rgb|color", re.IGNORECASE)
 """The preferred one of a camera's optical frames: that of a registered picture."""
 
-WITH_DEPTH = re.compile(r"rgb_?d|depth|kinect|realsense|xtion|astra|orbbec|(^|_)d4\d\d|zed", re.I)
-STEREO = re.compile(r"stereo", re.IGNORECASE)
-"""Usual names of cameras that measure depth with two eyes."""
-WITHOUT_DEPTH = re.compile(
-    r"(^|_)(left|right|l|r|wide|narrow|fish_?eye|infra\d?|high_def)(_|$)", re.I
-)
-"""Usual names of cameras that measure depth, and of those that do not: one eye of two."""
 DEPTH_KINDS = ("depth", "depth_camera", "rgbd_camera", "rgbd")
 """Gazebo's types of cameras that measure depth."""
 
@@ -108,17 +101,7 @@ def find_sensors(
         names = [n for n in names if not NO_FRAME.search(n) and not RANGER.search(n)]
         if names:
             found += _by_name(kind, names, skeleton)
-    cameras = iter(sorted((s for s in found if s.kind == "camera"), key=_behind))
-    return [next(cameras) if sensor.kind == "camera" else sensor for sensor in found]
-
-
-def _behind(sensor: FoundSensor) -> int:
-    """Cameras with depth come before others: skills look with the first camera."""
-    if sensor.depth or WITH_DEPTH.search(sensor.link):
-        return 0
-    if STEREO.search(sensor.link):
-        return 2
-    return 3 if WITHOUT_DEPTH.search(sensor.link) else 1
+    return found
 
 
 def _by_name(kind: str, names: list[str], skeleton: Skeleton) -> list[FoundSensor]:

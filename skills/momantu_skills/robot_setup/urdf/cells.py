@@ -29,7 +29,7 @@ def swallowed(
     ignored: pairs whose meeting says nothing.
     """
     apart = {frozenset(pair) for pair in ignored}
-    long = [part for part in body.urdf.parts if part.kind == "mesh" and _is_long(part)]
+    long = [part for part in body.urdf.parts if is_long(part)]
     for pose, joints in poses.items():
         at = body.link_poses(joints, list(body.hulls))
         for part in long:
@@ -43,8 +43,9 @@ def swallowed(
                     yield pose, link, part.link
 
 
-def _is_long(part: CollisionPart) -> bool:
-    return float(np.ptp(part_points(part), axis=0).max()) >= LONGEST_HULL
+def is_long(part: CollisionPart) -> bool:
+    """Whether a part is a mesh that planning takes as it is, not for its hull."""
+    return part.kind == "mesh" and float(np.ptp(part_points(part), axis=0).max()) >= LONGEST_HULL
 
 
 def cuts_of(body: Body, link: str) -> dict[str, tuple[float, ...]]:

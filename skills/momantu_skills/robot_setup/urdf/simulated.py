@@ -16,6 +16,7 @@ from momantu_skills.manipulation.model.hulls import convex, load_mesh, part_poin
 from momantu_skills.manipulation.model.shapes import LinkShapes
 from momantu_skills.manipulation.model.urdf import CollisionPart
 from momantu_skills.robot_setup.urdf.body import Body, Contacts
+from momantu_skills.robot_setup.urdf.cells import cuts_of, is_long
 
 CRUMB = 1e-5
 """Least volume of a cell, m3: smaller ones are slivers along a cut, and a simulator leaves them
@@ -23,8 +24,29 @@ out."""
 OFTEN = 0.1
 """Share of random postures in which hulls meet while the links are apart: above it, no motion of
 the joint between them can keep them from pressing."""
+HOLLOW, LEAST_HOLLOW = 0.15, 5e-4
+"""Share of a hull's volume, and m3, that cutting the mesh must free for it to be cut."""
 POSTURES = 60
 """Random postures that are tried."""
+
+
+def hollow(body: Body, above: float) -> Iterator[str]:
+    """Links with a long mesh whose hull fills much that cutting the mesh leaves free.
+
+    Planning takes a long mesh as it is, and leads the arm through its hollows; a simulator that
+    takes the hull would stop it there. Links that reach down to `above` m over the floor are left
+    out: no arm goes below a base.
+    """
+    floor = min(body.lowest({}), 0.0)
+    for link in dict.fromkeys(part.link for part in body.urdf.parts if is_long(part)):
+        if float(body.corners((link,), {})[:, 2].min()) < floor + above:
+            continue
+        cuts = cuts_of(body, link)
+        long = [part for part in body.urdf.parts if part.link == link and is_long(part)]
+        whole = sum(_volume(part_points(part)) for part in long)
+        cells = sum(_volume(points) for part in long for points in _solids(part, cuts))
+        if cuts and whole - cells > max(HOLLOW * whole, LEAST_HOLLOW):
+            yield link
 
 
 def pressing(

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 
 from momantu_bt.geometry import Transform
-from momantu_skills.robot_setup.find.proposal import OPTICAL_FROM_LINK, Proposal
+from momantu_skills.robot_setup.find.cameras import OPTICAL_FROM_LINK
+from momantu_skills.robot_setup.find.proposal import Proposal
 from momantu_skills.robot_setup.find.sensors import FoundSensor
 from momantu_skills.robot_setup.write.file_text import scalar
 

@@ -307,7 +307,8 @@ def _simulation(proposal: Proposal) -> Iterator[str]:
     yield f"  finger_links: {listed(fingers)}"
     yield "  finger_friction: 1.0"
     if proposal.cells:
-        yield "  # Measured: other links lie in the hulls around these meshes. Guessed: even cuts."
+        yield "  # Measured: the hulls around these meshes swallow other links, or are much"
+        yield "  # fuller than the meshes. Guessed: even cuts."
         yield "  convex_cells:"
         for link, cuts in proposal.cells.items():
             inside = ", ".join(f"{n}: [{', '.join(map(number, at))}]" for n, at in cuts.items())

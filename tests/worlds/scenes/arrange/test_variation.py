@@ -3,6 +3,7 @@
 import math
 from functools import cache
 from itertools import combinations
+from pathlib import Path
 
 import pytest
 from momantu_worlds.scenes.arrange.floor import around, stand_pose, stand_zone
@@ -19,6 +20,7 @@ from momantu_worlds.scenes.arrange.spots import (
 from momantu_worlds.scenes.arrange.spots import outline_points as body_points
 from momantu_worlds.scenes.arrange.variation import vary
 from momantu_worlds.scenes.catalogue.tags import picture_edge
+from momantu_worlds.scenes.file.reader import parse_world
 from momantu_worlds.scenes.geometry.plane import Rectangle, gap, passages
 from momantu_worlds.scenes.loading import draw_episode, load_world
 
@@ -225,6 +227,29 @@ def test_a_world_that_a_robot_cannot_pass_is_refused():
     )
     assert "to the front of 'table_b'" in str(told.value)
     assert "write passage: 40 cm in `unknown`, or move what stands in the way" in str(told.value)
+
+
+BLOCKED = """
+momantu_world: 1
+name: study
+rooms: {study: {corner: [0, 0], size: [5, 4]}}
+tables:
+  desk: {kind: desk, at: [2.5, 3.5, -90 deg], size: [0.8, 1.6, 0.72], sides: [0 deg]}
+furniture:
+  seat: {kind: chair, at: [2.3, 2.7, 90 deg]}
+  plant: {kind: plant, at: [0.5, 0.5, 0 deg], moves: true}
+start: {at: [2.5, 1.2, 90 deg]}
+unknown: {moved: {most: 1}}
+site: {places: {home: [2.5, 1.2, 90 deg]}}
+"""
+
+
+def test_what_stands_in_the_way_is_named():
+    with pytest.raises(WorldError) as told:
+        vary(parse_world(BLOCKED, Path("study.yaml")), 0)
+    assert "to the front of 'desk'" in str(told.value)
+    assert str(told.value).endswith("move what stands in the way: seat")
+    vary(parse_world(BLOCKED.replace("[2.3, 2.7", "[4.3, 2.7"), Path("study.yaml")), 0)
 
 
 @pytest.mark.parametrize(("door", "disc"), [(1.0, 0.4), (0.8, 0.35), (0.7, 0.3), (0.3, None)])

@@ -91,3 +91,55 @@ def test_what_begins_in_the_floor_is_not_thrown_out_of_it(imported, box, depth, 
     assert can.still == still
     assert min(float(h[:, 2].min()) for h in can.hulls()) == pytest.approx(bottom, abs=1e-6)
     assert len([f for f in found.deviations if "in the floor" in f.what]) == (depth > 0)
+
+
+@pytest.mark.parametrize(("above", "bottom"), [(0.012, 0.0), (0.1, 0.1)])
+def test_what_begins_a_little_above_the_floor_is_set_on_it(imported, box, above, bottom):
+    found = imported(GROUND + box("b", "1 1 1", "3 0 0.5 0 0 0") + CAN.format(0.05 + above))
+    can = bodies(found)["can"]
+    assert not can.still
+    assert min(float(h[:, 2].min()) for h in can.hulls()) == pytest.approx(bottom, abs=1e-6)
+    said = [f for f in found.deviations if "above the floor" in f.what]
+    assert len(said) == (bottom == 0.0)
+
+
+@pytest.mark.parametrize(("gravity", "still"), [("0", True), ("false", True), ("1", False)])
+def test_what_no_gravity_pulls_stays_where_it_hangs(imported, box, gravity, still):
+    hung = CAN.format(1.5).replace(
+        "<link name='l'>", f"<link name='l'><gravity>{gravity}</gravity>"
+    )
+    found = imported(GROUND + box("b", "1 1 1", "3 0 0.5 0 0 0") + hung)
+    assert bodies(found)["can"].still == still
+    assert len([f for f in found.deviations if f.what == "no gravity pulls it"]) == still
+    assert not [f for f in found.deviations if "<gravity>" in f.what]
+
+
+@pytest.mark.parametrize(
+    ("name", "is_table"), [("bench", False), ("workbench", True), ("work_bench_2", True)]
+)
+def test_a_bench_with_a_back_is_a_seat_and_a_workbench_a_table(imported, box, name, is_table):
+    parts = (("1.5 0.5 0.46", "0 0 0.23"), ("1.5 0.04 0.9", "0 0.27 0.45"))
+    shape = "<geometry><box><size>{}</size></box></geometry>"
+    inside = "".join(
+        f"<{kind} name='{kind}{n}'><pose>{at} 0 0 0</pose>{shape.format(size)}</{kind}>"
+        for n, (size, at) in enumerate(parts)
+        for kind in ("visual", "collision")
+    )
+    model = f"<model name='{name}'><static>1</static><link name='l'>{inside}</link></model>"
+    found = imported(GROUND + box("far", "1 1 1", "4 0 0.5 0 0 0") + model)
+    assert (name in found.world.site.surfaces) == is_table
+
+
+@pytest.mark.parametrize(("into", "still"), [(0.01, False), (0.08, True)])
+def test_what_begins_deep_in_a_wall_stays_there(imported, box, into, still):
+    wall = box("wall", "1 0.1 2", f"-0.1 {0.3 + 0.05 + 0.03 - into} 1 0 0 0")
+    found = imported(GROUND + wall + CAN.format(0.05))
+    can = bodies(found)["can"]
+    assert can.still == still
+    said = [f.what for f in found.deviations if "in wall" in f.what]
+    assert said == ([f"it begins {into:.3f} m in wall/link"] if still else [])
+
+
+def test_what_lies_on_a_table_is_not_wedged(imported, box):
+    found = imported(GROUND + box("b", "1 1 0.7", "-0.1 0.3 0.35 0 0 0") + CAN.format(0.745))
+    assert not bodies(found)["can"].still

@@ -26,6 +26,7 @@ from momantu_worlds.sdf.mesh.files import Piece
 from momantu_worlds.sdf.mesh.reducing import clustered, count, reduced
 from momantu_worlds.sdf.read.model import Box
 from momantu_worlds.sdf.write.free_floor import HALF_WIDTH, free_floor
+from momantu_worlds.sdf.write.proposal import propose
 
 from momantu_bt.formats.places import Place
 from momantu_bt.geometry import Array, Transform
@@ -197,3 +198,35 @@ def test_no_two_vertices_of_a_cell_are_left_and_no_triangle_without_area(
     rows = np.sort(piece.triangles, axis=1)
     assert (np.diff(rows, axis=1) > 0).all()
     assert len(np.unique(rows, axis=0)) == len(rows)
+
+
+def test_an_arena_of_low_walls_is_within_although_its_corners_are_high() -> None:
+    """Towers at its corners are hollow meshes, higher than walls, and enclose no more than that."""
+    fence = [
+        block((6.0, 0.2, 0.5), (0.0, 3.0, 0.25)),
+        block((6.0, 0.2, 0.5), (0.0, -3.0, 0.25)),
+        block((0.2, 6.0, 0.5), (3.0, 0.0, 0.25)),
+        block((0.2, 6.0, 0.5), (-3.0, 0.0, 0.25)),
+    ]
+    tower = [block((1.6, 0.05, 1.6), (3.8, y, 0.8)) for y in (-0.8, 0.8)] + [
+        block((0.05, 1.6, 1.6), (x, 0.0, 0.8)) for x in (3.0, 4.6)
+    ]
+    floor = free_floor(hulls(*fence, *tower))
+    assert floor.inside[floor.index(-1.0, 1.0) or (0, 0)]
+    assert not floor.inside[floor.index(-4.0, 0.0) or (0, 0)]
+    home = propose([*fence, *tower], None).start
+    assert abs(home.x) < 3.0
+    assert abs(home.y) < 3.0
+
+
+def test_walls_count_before_what_is_low_where_they_enclose_the_floor() -> None:
+    house = [
+        block((6.0, 0.2, 2.5), (0.0, 3.0, 1.25)),
+        block((6.0, 0.2, 2.5), (0.0, -3.0, 1.25)),
+        block((0.2, 6.0, 2.5), (3.0, 0.0, 1.25)),
+        block((0.2, 6.0, 2.5), (-3.0, 0.0, 1.25)),
+    ]
+    garden = [block((0.2, 6.0, 0.5), (6.0, 0.0, 0.25))]
+    floor = free_floor(hulls(*house, *garden))
+    assert floor.inside[floor.index(0.0, 0.0) or (0, 0)]
+    assert not floor.inside[floor.index(4.5, 0.0) or (0, 0)]

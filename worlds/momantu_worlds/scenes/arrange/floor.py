@@ -142,6 +142,10 @@ def _promise(name: str, room: _Room, known: Mapping[str, PlacedPiece]) -> None:
         return
     wider = next((r for r in RADII if r < room.passage and not room.missed(known.values(), r)), 0.0)
     cure = "move what stands in the way"
+    without = {n: [p for other, p in known.items() if other != n] for n in known}
+    guilty = [n for n, others in without.items() if len(room.missed(others)) < len(missed)]
+    if guilty:
+        cure += f": {', '.join(guilty)}"
     if wider:
         cure = f"write passage: {100 * wider:.0f} cm in `unknown`, or {cure}"
     raise WorldError(

@@ -42,7 +42,9 @@ SEAT, BACK, BESIDE = 0.6, 0.15, 0.1
 third, m."""
 CELL = 0.025
 """Cell size of the grid on which free room is counted, m."""
-_TABLE = re.compile(r"table|desk|counter|stand|shelf|case|cabinet|drawer|board|bench|crate|box")
+_TABLE = re.compile(
+    r"table|desk|counter|stand|shelf|case|cabinet|drawer|board|work_?bench|crate|box"
+)
 _OTHER = re.compile(
     r"chair|sofa|couch|stool|seat|bed|toilet|bath|sink|wall|floor|ceiling|door|window|stair|lamp|light|fitness"
 )

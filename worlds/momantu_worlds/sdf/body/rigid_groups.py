@@ -50,7 +50,20 @@ def rigid_groups(model: PlacedModel, deviations: Deviations) -> list[Group]:
     for one in model.everything():
         for joint in one.joints:
             _apply(groups, one, joint, deviations)
-    return list({id(group): group for group in groups.values()}.values())
+    found = list({id(group): group for group in groups.values()}.values())
+    for group in found:
+        _hold(group, deviations)
+    return found
+
+
+def _hold(group: Group, deviations: Deviations) -> None:
+    """Keep what gravity does not pull, such as a picture on a wall, where it is."""
+    first = group.links[0]
+    if not group.still and all(placed.link.weightless for placed in group.links):
+        group.still = True
+        deviations.changed(
+            first.link.place, first.subject, "no gravity pulls it", "it stays where it is"
+        )
 
 
 def _with_static(model: PlacedModel, *, static: bool) -> Iterator[tuple[PlacedModel, bool]]:

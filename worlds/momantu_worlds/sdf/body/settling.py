@@ -18,6 +18,8 @@ FLUSH = 0.002
 """Depth below the floor, m, down to which a part is still meant to be visible on it."""
 DEEP = 0.02
 """Depth below the floor, m, down to which a loose body is set on it."""
+LOW = 0.02
+"""Height above the floor, m, from which a loose body is set on it: it would only drop there."""
 WIDE, LIFTED = 10.0, (0.001, 0.003)
 """Least area of a wide part, m2; least height above the floor of parts on it, m: of wide ones, and
 of parts on those. Two faces at the same height flicker in pictures."""
@@ -36,8 +38,12 @@ def settled(
 
 
 def _raised(body: ImportedBody, deviations: Deviations) -> ImportedBody:
-    """A loose body that begins in the floor: set on it, or held where it is if it is deep in it."""
+    """A loose body near the floor: set on it, or held where it is if it is deep in it."""
     lowest = min((float(hull[:, 2].min()) for hull in body.hulls()), default=0.0)
+    if FLUSH < lowest <= LOW:
+        what = f"it begins {lowest:.3f} m above the floor"
+        deviations.changed(body.place, body.title, what, "it stands on it")
+        return body.lifted(-lowest)
     if lowest > -FLUSH:
         return body
     what = f"it begins {-lowest:.3f} m in the floor"

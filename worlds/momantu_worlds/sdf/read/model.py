@@ -162,7 +162,8 @@ class Joint:
 class Link:
     """A rigid thing. mass: kg. sensors: how many it carries.
 
-    unseen, untouched: how many of its visuals and collisions could not be read.
+    unseen, untouched: how many of its visuals and collisions could not be read. weightless: gravity
+    does not pull it.
     """
 
     name: str
@@ -175,6 +176,7 @@ class Link:
     sensors: int = 0
     unseen: int = 0
     untouched: int = 0
+    weightless: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ MASS = 1.0
 MASSES = (1e-5, 1e5)
 """Range of possible masses, kg; others are mistakes."""
 _OF_MODEL = ("pose", "static", "link", "joint", "frame", "model", "include")
-_OF_LINK = ("pose", "inertial", "visual", "collision", "light")
+_OF_LINK = ("pose", "inertial", "visual", "collision", "light", "gravity")
 _OF_INCLUDE = ("uri", "name", "pose", "static", "placement_frame")
 
 
@@ -171,6 +171,7 @@ def _link(element: Element, around: str, static: bool, reading: Reading) -> Link
         sensors=sum(1 for _ in element.all("sensor")),
         unseen=unseen,
         untouched=untouched,
+        weightless=not flag(element, "gravity", True),
     )
 
 

@@ -25,6 +25,10 @@ EXACT = 0.001
 """Tolerance of heights, m: a slab of exactly the lowest height is driven over."""
 WALL = 1.5
 """What is so high may be a wall, m."""
+FENCE = 0.3
+"""What is so high may fence an arena, where no walls enclose a building, m."""
+LEAST_SHARE = 0.5
+"""Walls enclose a building if they have at least this share of the widest region within fences."""
 SMALLEST = 4.0
 """Least area of a building, m2."""
 HALF_WIDTH = 0.35
@@ -36,7 +40,7 @@ class FreeFloor:
     """clearance: (rows, columns) distance to the nearest obstacle, m; row 0 is at the smallest y.
 
     regions: (rows, columns) number of the connected region; 0: the robot does not fit.
-    walls: (rows, columns) whether something as high as a wall stands there.
+    walls, fences: (rows, columns) whether something as high as a wall, or a fence, stands there.
     """
 
     origin: tuple[float, float]
@@ -44,17 +48,35 @@ class FreeFloor:
     clearance: NDArray[np.float32]
     regions: NDArray[np.int32]
     walls: NDArray[np.bool_]
+    fences: NDArray[np.bool_]
 
     @cached_property
+    def _enclosed(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """What encloses, and the cells within: a building, else a fenced arena, else everything.
+
+        Of an arena the pieces that are as high as walls enclose little of where a robot drives.
+        """
+        building, arena = inside(self.walls), inside(self.fences)
+        fenced = self._largest(building) < LEAST_SHARE * self._largest(arena)
+        kinds = [(self.walls, building), (self.fences, arena)]
+        for enclosing, found in kinds[::-1] if fenced else kinds:
+            if float(found.sum()) * self.cell**2 > SMALLEST:
+                return enclosing, found
+        return self.walls, np.ones_like(self.walls)
+
+    def _largest(self, cells: NDArray[np.bool_]) -> int:
+        """Cells of the region that has most of some cells."""
+        return int(np.bincount(self.regions[cells], minlength=2)[1:].max())
+
+    @property
     def inside(self) -> NDArray[np.bool_]:
-        """Cells within a building; all of them where there is none."""
-        found = inside(self.walls)
-        return found if float(found.sum()) * self.cell**2 > SMALLEST else np.ones_like(found)
+        """Cells within a building, or an arena; all of them where there is none."""
+        return self._enclosed[1]
 
     @cached_property
     def from_walls(self) -> NDArray[np.float32]:
-        """(rows, columns) distance to the nearest wall, m."""
-        free = np.where(self.walls, 0, 255).astype(np.uint8)
+        """(rows, columns) distance to the nearest wall, or fence, m."""
+        free = np.where(self._enclosed[0], 0, 255).astype(np.uint8)
         return np.asarray(cv2.distanceTransform(free, cv2.DIST_L2, 5), np.float32) * self.cell
 
     def index(self, x: float, y: float) -> tuple[int, int] | None:
@@ -89,14 +111,17 @@ def free_floor(hulls: Iterable[Array]) -> FreeFloor:
     cell = max(CELL, float((high - low).max()) / MOST_CELLS)
     columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
     free = np.full((rows, columns), 255, dtype=np.uint8)
-    walls = np.zeros_like(free)
+    walls, fences = np.zeros_like(free), np.zeros_like(free)
     for footprint, hull in zip(footprints, obstacles, strict=True):
         around = cv2.convexHull(((footprint - low) / cell).astype(np.float32))
-        cv2.fillConvexPoly(free, np.floor(around).astype(np.int32), 0)
-        if hull[:, 2].max() >= WALL:
-            cv2.fillConvexPoly(walls, np.floor(around).astype(np.int32), 1)
+        base, top = np.floor(around).astype(np.int32), float(hull[:, 2].max())
+        cv2.fillConvexPoly(free, base, 0)
+        if top >= FENCE:
+            cv2.fillConvexPoly(fences, base, 1)
+        if top >= WALL:
+            cv2.fillConvexPoly(walls, base, 1)
     clearance = np.asarray(cv2.distanceTransform(free, cv2.DIST_L2, 5), dtype=np.float32) * cell
     fits = (clearance > HALF_WIDTH).astype(np.uint8)
     _, regions = cv2.connectedComponents(fits, connectivity=4)
     origin = float(low[0]), float(low[1])
-    return FreeFloor(origin, cell, clearance, np.asarray(regions), walls > 0)
+    return FreeFloor(origin, cell, clearance, np.asarray(regions), walls > 0, fences > 0)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_worlds.checking.convex import Convex, convex
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Hull, Part
+from momantu_worlds.scenes.geometry.convex import Convex, convex
 
 from momantu_bt.geometry import Transform
 

@@ -108,6 +108,11 @@ def convex(part: Part, map_from_part: Transform) -> Convex:
     return Convex(map_from_part.apply(points), normals @ turn.T, edges @ turn.T)
 
 
+def hull_of(points: Array) -> Convex:
+    """The convex hull of points (n, 3) in the map."""
+    return Convex(*_hull(points))
+
+
 def _prism() -> tuple[Array, Array]:
     """Normals and edge directions of the upright prism that stands for cylinders."""
     turns = (np.arange(SIDES) + 0.5) * (2.0 * math.pi / SIDES)
