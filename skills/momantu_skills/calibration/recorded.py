@@ -10,9 +10,10 @@ from scipy.optimize import minimize_scalar
 
 from momantu_bt.geometry import Array
 from momantu_skills.calibration.errors import CalibrationError
-from momantu_skills.calibration.hand_eye.estimate import LEAST_VIEWS, Estimate, estimate, solve
+from momantu_skills.calibration.hand_eye.estimate import LEAST_VIEWS, Estimate, estimate, rough
+from momantu_skills.calibration.hand_eye.linear import UNKNOWNS
 from momantu_skills.calibration.hand_eye.readings import Reading, better_reading
-from momantu_skills.calibration.hand_eye.refine import UNKNOWNS, refine
+from momantu_skills.calibration.hand_eye.robust import robust
 from momantu_skills.calibration.hand_eye.spread import check_spread
 from momantu_skills.calibration.hand_eye.views import Mounting, Views, residuals
 from momantu_skills.calibration.trajectory.pairing import distinct, paired
@@ -135,7 +136,7 @@ def _refined_offset(
     poses, seen = paired(hand, target, offset, settings.gap)
     few = seen[distinct(poses, _VIEWS_TO_ALIGN)]
     views, _, _ = _views(hand, few, offset, settings)
-    start = solve(views, settings.seed)
+    start = rough(views, settings.seed)
 
     def cost(change: float) -> float:
         changed, _, _ = _views(hand, few, offset + change, settings)
@@ -148,6 +149,6 @@ def _refined_offset(
 
 def _misfit(views: Views, mounting: Mounting, noise: tuple[float, float]) -> float:
     """The mean residual of the best mounting, in units of given noise; one view counts little."""
-    turned, away = residuals(views, refine(views, mounting).mounting)
+    turned, away = residuals(views, robust(views, mounting).mounting)
     squares = (turned / noise[0]) ** 2 + (away / noise[1]) ** 2
     return float(np.mean(np.log1p(squares / (UNKNOWNS / 2))))
