@@ -29,7 +29,7 @@ _SMALLEST_STEP = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Robust:
-    """The estimate. noise: of rotation in rad, of position in m, per axis. right: the views (N,)."""
+    """The estimate. noise: of rotation, rad, and position, m, per axis. right: the views (N,)."""
 
     mounting: Mounting
     noise: tuple[float, float]
