@@ -127,12 +127,22 @@ class Studio:
 
     def picture(self, rotation: Array, shift: Array, shear: float = 0.0, motion: int = 0) -> Any:
         """A gray picture (480, 640) of the board at a place."""
+        edges = np.array(self.print.shape[::-1]) / PRINTED * self.board.square
+        rim = np.mgrid[0:9, 0:7].T.reshape(-1, 2) / (8.0, 6.0) * edges - self.board.square
+        there = self.camera.project(np.pad(rim, ((0, 0), (0, 1))) @ rotation.T + shift)
+        low = np.clip(there.min(axis=0).astype(int) - 8, 0, None)
+        high = np.clip(there.max(axis=0).astype(int) + 8, None, SIZE)
+        part = self.rays[low[1] * FINER : high[1] * FINER, low[0] * FINER : high[0] * FINER]
         board_from_ray = np.linalg.inv(np.column_stack([rotation[:, :2], shift]))
-        flat = self.rays @ board_from_ray[:, :2].T + board_from_ray[:, 2]
+        flat = part @ board_from_ray[:, :2].T + board_from_ray[:, 2]
         onto = flat[..., :2] / flat[..., 2:] * (PRINTED / self.board.square)
         onto = (onto + PRINTED - 0.5).astype(np.float32)
-        fine = cv2.remap(self.print, onto, None, cv2.INTER_LINEAR, borderValue=128.0)
-        drawn = cv2.resize(fine, SIZE, interpolation=cv2.INTER_AREA)
+        fine = cv2.remap(self.print, onto, None, cv2.INTER_LINEAR, borderValue=128.0)  # type: ignore[call-overload]
+        drawn = np.full(SIZE[::-1], 128.0, dtype=np.float32)
+        inside = tuple(int(each) for each in high - low)
+        drawn[low[1] : high[1], low[0] : high[0]] = cv2.resize(
+            fine, inside, interpolation=cv2.INTER_AREA
+        )
         drawn = cv2.GaussianBlur(drawn, (0, 0), self.rng.uniform(0.5, 1.0))
         if motion:
             drawn = cv2.blur(drawn, (motion, 1))

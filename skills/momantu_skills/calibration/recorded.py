@@ -21,6 +21,8 @@ from momantu_skills.calibration.trajectory.time_offset import time_offset
 from momantu_skills.calibration.trajectory.trajectory import Trajectory
 
 _VIEWS_TO_ALIGN = 100
+_TOO_FAR = 20.0
+"""m; no robot moves its hand so far to look at a target that far away."""
 
 
 class MisreadError(CalibrationError):
@@ -89,6 +91,7 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
             f"{hand.name} and {target.name} hold the same poses; expected those of the hand in one "
             f"file, and those of the target in the camera's frame in the other"
         )
+    _check_metres(hand, target)
     offset = time_offset(hand, target) if settings.align else 0.0
     views, lines, matched = _views(hand, target, offset, settings)
     _check_count(len(views), matched, target)
@@ -103,6 +106,17 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
     return Calibration(
         settings, hand, target, found, views, lines, len(target), matched, offset, turned
     )
+
+
+def _check_metres(hand: Trajectory, target: Trajectory) -> None:
+    """CalibrationError where both files are in another unit, which no residual shows."""
+    moves = float(np.linalg.norm(np.ptp(hand.positions, axis=0)))
+    away = float(np.median(np.linalg.norm(target.positions, axis=1)))
+    if min(moves, away) > _TOO_FAR:
+        raise CalibrationError(
+            f"the hand moves by {moves:.0f} m, and the target is {away:.0f} m from the camera: "
+            f"positions in {hand.name} and {target.name} are in millimetres or so; write metres"
+        )
 
 
 def _views(
