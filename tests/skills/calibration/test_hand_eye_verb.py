@@ -130,6 +130,23 @@ def scale_target(files: Files) -> None:
     files.target[:, 1:4] *= 1000.0
 
 
+def scale_both(files: Files) -> None:
+    scale_hand(files)
+    scale_target(files)
+
+
+def mirror_target(files: Files) -> None:
+    files.target[:, [1, 5, 6]] *= -1.0
+
+
+def turn_back_target(files: Files) -> None:
+    files.target[:, 4:7] *= -1.0
+
+
+def milliseconds(files: Files) -> None:
+    files.target[:, 0] *= 1000.0
+
+
 def invert_target(files: Files) -> None:
     files.target = rows(files.times, seen_from(motion(files.times, 3)).inverse())
 
@@ -174,6 +191,13 @@ def later(files: Files) -> None:
     [
         (scale_hand, "positions in DIR/hand.csv are in millimetres; write metres"),
         (scale_target, "positions in DIR/tag.csv are in millimetres; write metres"),
+        (scale_both, "positions in DIR/hand.csv and DIR/tag.csv are in millimetres or so; write"),
+        (mirror_target, "far better if one of DIR/hand.csv and DIR/tag.csv is mirrored: is the"),
+        (
+            turn_back_target,
+            "if quaternions, not positions, in DIR/tag.csv are inverted; write both",
+        ),
+        (milliseconds, "Stamps of DIR/tag.csv look like milliseconds; write s"),
         (invert_target, "DIR/tag.csv is inverted: swap --camera-from-target and --target-from-"),
         (invert_hand, "DIR/hand.csv is inverted: swap --base-from-hand and --hand-from-base, or"),
         (w_first, "quaternions in DIR/tag.csv begin with w; a first line t,x,y,z,qw,qx,qy,qz"),
