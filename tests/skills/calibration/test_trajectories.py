@@ -68,7 +68,7 @@ GOOD = "0, 0, 0, 0, 0, 0, 0, 1\n"
         ("time,x,y,z,roll,pitch,yaw,w\n" + GOOD, "the header does not name the columns"),
         ("1, 0, 0, 0, 0, 0, 0, 1\n" + GOOD, ":2:1: error: t goes back by 1 s, from 1 in line 1"),
         (GOOD + "0, 1, 0, 0, 0, 0, 0, 1\n", ":2:1: error: another pose at the same time as in"),
-        (GOOD + "1, 0, , 0, 0, 0, 0, 1\n", ":2:6: error: y is ''; expected a finite number"),
+        (GOOD + "1, 0, , 0, 0, 0, 0, 1\n", ":2:7: error: y is ''; expected a finite number"),
         ("0, 0, 0, 0, 0, 0, 0, 1, 9\n", "the row has 9 columns; expected t, x, y, z"),
         ("t,x,y,z,roll,pitch,yaw\n" + GOOD, "angles are not read; write quaternions"),
     ],
