@@ -184,6 +184,31 @@ def test_pictures_of_an_aprilgrid(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert lens.matrix[0, 0] == pytest.approx(MATRIX[0, 0], rel=0.02)
 
 
+def test_mirrored_pictures_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pictures = folder(tmp_path / "in", CHARUCO, 5)
+    for file in pictures.iterdir():
+        shown = cv2.imread(str(file))
+        assert shown is not None
+        cv2.imwrite(str(file), shown[:, ::-1])
+    code, said = run(
+        capsys, pictures, "--board", "charuco 7x5", "--square", "30mm", "--marker", "22mm"
+    )
+    assert code == 2
+    assert "00.png shows it mirrored: is the picture flipped, or the print?" in said
+
+
+def test_a_charuco_board_of_an_old_print_is_found() -> None:
+    old = Board("charuco", 7, 6, 0.03, 0.022)
+    family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    print_of = cv2.aruco.CharucoBoard((7, 6), old.square, old.marker, family)
+    print_of.setLegacyPattern(True)
+    flat = np.pad(np.asarray(print_of.generateImage((420, 360))), 40, constant_values=255)
+    shown = find(old, flat)
+    assert shown is not None
+    assert len(shown.indices) == 30
+    assert shown.pixels[0] == pytest.approx((40 + 60 - 0.5, 40 + 60 - 0.5), abs=0.3)
+
+
 @pytest.fixture(scope="module")
 def four(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder(tmp_path_factory.mktemp("four") / "in", CHESSBOARD, 4)

@@ -163,11 +163,13 @@ def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
     family = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{board.dictionary}"))
     size = (board.columns, board.rows)
     charuco = cv2.aruco.CharucoBoard(size, board.square, board.marker, family)
-    corners, ids, _, _ = cv2.aruco.CharucoDetector(charuco).detectBoard(gray)
-    if ids is None or len(ids) < _LEAST_POINTS:
-        return None
-    pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
-    return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)
+    for old in (False, True):  # OpenCV before 4.6 printed an even number of rows otherwise
+        charuco.setLegacyPattern(old)
+        corners, ids, _, _ = cv2.aruco.CharucoDetector(charuco).detectBoard(gray)
+        if ids is not None and len(ids) >= _LEAST_POINTS:
+            pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
+            return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)
+    return None
 
 
 def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
