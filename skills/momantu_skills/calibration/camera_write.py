@@ -9,9 +9,10 @@ from pathlib import Path
 from momantu_bt.errors import InputError
 from momantu_bt.formats.files import check_writable, write_whole
 from momantu_bt.formats.names import valid_names
-from momantu_bt.robots.reader import FILE, read_robot_file
+from momantu_bt.robots.reader import read_robot_file
 from momantu_bt.robots.robot_file import RobotFile
 from momantu_skills.calibration.camera.lens import Lens
+from momantu_skills.calibration.robot_write import file_of
 
 _KIND = "camera"
 _PLACES = 7
@@ -24,7 +25,7 @@ def chosen(path: Path, sensor: str | None) -> str:
     Raises:
         InputError: it is no robot file, has no such camera, or cannot be written.
     """
-    file = _file(path)
+    file = file_of(path)
     if not file.is_file():
         raise InputError(f"there is no robot file {file}; `momantu-bt robots setup` makes one")
     check_writable(file)
@@ -45,7 +46,7 @@ def write(path: Path, sensor: str, lens: Lens, size: tuple[int, int]) -> str:
     Raises:
         InputError: the sensor is not written as a block with a key in each line.
     """
-    file = _file(path)
+    file = file_of(path)
     text = file.read_text(encoding="utf-8")
     before = read_robot_file(file).sensors[sensor]
     angle = 2.0 * math.atan(0.5 * size[0] / float(lens.matrix[0, 0]))
@@ -78,7 +79,3 @@ def write(path: Path, sensor: str, lens: Lens, size: tuple[int, int]) -> str:
 
 def _cameras(robot: RobotFile) -> list[str]:
     return [name for name, sensor in robot.sensors.items() if sensor.kind == _KIND]
-
-
-def _file(path: Path) -> Path:
-    return path / FILE if path.is_dir() else path
