@@ -76,6 +76,11 @@ def test_an_eye_in_the_hand(files: Files) -> None:
     assert distance < MOST
     assert off(found["base_from_target"], TARGET)[1] < 2.0
     assert found["time_offset"] == 0.0
+    shares = found["noise"]["acts_at"]
+    assert list(shares) == ["target", "camera", "hand", "base"]
+    assert max(shares, key=lambda place: shares[place]) == "target"
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert "turns act " in files.said
     assert [method["name"] for method in found["methods"]][-1] == "joint"
     assert len(found["residuals"]) == found["views"] == 25
     assert found["outliers"] == []
