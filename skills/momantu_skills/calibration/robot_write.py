@@ -26,7 +26,7 @@ def refuse_wrong(path: Path, description: RobotDescription) -> None:
         InputError: it is no robot file, or another robot's, or cannot be written.
     """
     file = file_of(path)
-    if not file.isfile_of():
+    if not file.is_file():
         source = description.source
         copy = "" if source is None else f"; make a copy first: cp -r {source.parent} {file.parent}"
         raise InputError(f"there is no robot file {file}{copy}")

@@ -77,7 +77,7 @@ def refine(views: Views, start: Robust) -> Refined:
     square = _normal(line.rows[right], inverse[right], line.residuals[right])[0]
     return Refined(
         mounting,
-        np.linalg.inv(square),
+        np.asarray(np.linalg.inv(square), dtype=np.float64),
         variances,
         noise_of(variances, shapes(views[right], mounting)),
         ~right,
