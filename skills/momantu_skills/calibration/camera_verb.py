@@ -8,14 +8,14 @@ from typing import Annotated
 
 import typer
 
-from momantu_bt.errors import ExitCode
+from momantu_bt.errors import ExitCode, InputError
 from momantu_bt.formats.files import check_writable, write_whole
 from momantu_bt.formats.units import option_in_unit
 from momantu_bt.lazy import lazily
 from momantu_skills.calibration.models import Model
 
 with lazily():
-    from momantu_skills.calibration import camera_text
+    from momantu_skills.calibration import camera_text, camera_write
     from momantu_skills.calibration.camera import board as boards
     from momantu_skills.calibration.camera import camera_info, coverage, lens, pictures
 
@@ -48,6 +48,13 @@ def camera(
     json_file: Annotated[
         Path | None, typer.Option("--json", help="Write the result to a file, as JSON.")
     ] = None,
+    write: Annotated[
+        Path | None,
+        typer.Option(help="Write the picture's size and field of view into this robot file."),
+    ] = None,
+    sensor: Annotated[
+        str | None, typer.Option(help="Which of the robot file's cameras --write means.")
+    ] = None,
     plot: Annotated[
         Path | None, typer.Option(help="Draw where the boards were, and the residuals: a PNG.")
     ] = None,
@@ -62,10 +69,14 @@ def camera(
       momantu-bt calibrate camera pictures/ --board "chessboard 9x6" --square 25mm -o camera.yaml
       momantu-bt calibrate camera pictures/ --board "charuco 7x5" --square 30mm --marker 22mm
       momantu-bt calibrate camera wide/ --board "chessboard 9x6" --square 25mm --model fisheye
+      momantu-bt calibrate camera pictures/ --board "chessboard 9x6" --square 25mm --write my_robot/
     """
     for path in (output, plot, json_file):
         if path is not None:
             check_writable(path)
+    if sensor is not None and write is None:
+        raise InputError("--sensor names a camera of the robot file that --write gives; give both")
+    written = None if write is None else camera_write.chosen(write, sensor)
     given = boards.read_board(
         board,
         option_in_unit("--square", square, "m", "25mm"),
@@ -87,6 +98,9 @@ def camera(
     if output is not None:
         write_whole(output, camera_info.camera_info(found, shown.size, name))
         typer.echo(f"written to {output}")
+    if write is not None and written is not None:
+        said = camera_write.write(write, written, found, shown.size)
+        typer.echo(f"written into {write}: {said}")
     if plot is not None:
         write_whole(plot, coverage.plot(shown, found))
         typer.echo(f"drawn in {plot}")

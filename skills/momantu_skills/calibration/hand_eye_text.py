@@ -72,9 +72,21 @@ def _mounting(found: Calibration) -> list[str]:
         f"{settings.holder}_from_target",
         f"  position         {_numbers(mounting.target.position, 5)} m",
         f"  quaternion_wxyz  {_numbers(mounting.target.quaternion, 6)}",
-        f"noise per axis: {math.degrees(refined.noise[0]):.3f} deg, {1e3 * refined.noise[1]:.2f} "
-        f"mm",
+        _noise(found),
     ]
+
+
+def _noise(found: Calibration) -> str:
+    noise, settings = found.estimate.refined.noise, found.settings
+    frames = ("target", "camera", settings.carrier, settings.holder)
+    parts = sorted(zip(noise.shares, frames, strict=True), reverse=True)
+    where = ", ".join(
+        f"{100 * share:.0f} % at the {frame}" for share, frame in parts if share > 0.1
+    )
+    return (
+        f"noise per axis: {math.degrees(noise.rotation):.3f} deg, {1e3 * noise.position:.2f} mm at "
+        f"the target; turns act {where}"
+    )
 
 
 def _outliers(found: Calibration) -> list[str]:
@@ -96,6 +108,7 @@ def _outliers(found: Calibration) -> list[str]:
 def plain(found: Calibration, notes: list[str]) -> dict[str, Any]:
     """The result as plain data, in SI."""
     refined, settings = found.estimate.refined, found.settings
+    frames = ("target", "camera", settings.carrier, settings.holder)
     return {
         f"{settings.carrier}_from_camera": {
             **_plain(refined.mounting.eye),
@@ -105,7 +118,11 @@ def plain(found: Calibration, notes: list[str]) -> dict[str, Any]:
         f"{settings.holder}_from_target": _plain(refined.mounting.target),
         "views": len(found.views),
         "time_offset": found.offset,
-        "noise": {"rotation": refined.noise[0], "position": refined.noise[1]},
+        "noise": {
+            "rotation": refined.noise.rotation,
+            "position": refined.noise.position,
+            "acts_at": dict(zip(frames, _list(refined.noise.shares), strict=True)),
+        },
         "methods": [_plain_method(each) for each in found.estimate.methods],
         "residuals": [
             {

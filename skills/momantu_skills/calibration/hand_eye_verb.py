@@ -120,6 +120,10 @@ def _misread(
         kind.TARGET_MILLIMETRES: f"positions in {target.name} are in millimetres; write metres",
         kind.HAND_CENTIMETRES: f"positions in {hand.name} are in centimetres; write metres",
         kind.TARGET_CENTIMETRES: f"positions in {target.name} are in centimetres; write metres",
+        kind.MIRRORED: f"one of {hand.name} and {target.name} is mirrored: is the picture or the "
+        f"board mirrored, or one of the frames left-handed?",
+        kind.HAND_TURNED_BACK: f"{_BACK} {hand.name} are inverted; {_BOTH}",
+        kind.TARGET_TURNED_BACK: f"{_BACK} {target.name} are inverted; {_BOTH}",
         kind.HAND_W_FIRST: f"quaternions in {hand.name} begin with w; {_HEADER}",
         kind.TARGET_W_FIRST: f"quaternions in {target.name} begin with w; {_HEADER}",
         kind.BOTH_W_FIRST: f"quaternions in both files begin with w; {_HEADER}",
@@ -127,4 +131,6 @@ def _misread(
     return f"the files do not fit together as they are, but far better if {says[better]}"
 
 
+_BACK = "quaternions, not positions, in"
+_BOTH = "write both of the same direction"
 _HEADER = "a first line t,x,y,z,qw,qx,qy,qz says so"

@@ -15,6 +15,8 @@ from momantu_skills.calibration.trajectory.time_offset import time_offset
 _FEW = 12
 _FAR = 0.4
 """m; a camera is rarely mounted farther from the hand."""
+_FAR_WAY = 5.0
+"""m between the ends of the hand's ways."""
 _BADLY_KNOWN = math.radians(0.5), 0.005
 _SCALE = 0.02
 _MANY_WRONG = 0.3
@@ -30,6 +32,7 @@ def notes(found: Calibration) -> list[str]:
         _badly_known(found),
         _many_wrong(found),
         _scaled(found),
+        _far_ways(found),
         _swapped(found),
         _behind(found),
         _late(found),
@@ -79,6 +82,13 @@ def _scaled(found: Calibration) -> str:
         f"positions of the target fit better times {scale:.3f} (± {deviation:.3f}): is the size of "
         f"its squares or tags right, and the camera's focal length?"
     )
+
+
+def _far_ways(found: Calibration) -> str:
+    moves = float(np.linalg.norm(np.ptp(found.hand.positions, axis=0)))
+    if moves < _FAR_WAY:
+        return ""
+    return f"the hand moves by {moves:.1f} m: are positions in metres?"
 
 
 def _swapped(found: Calibration) -> str:

@@ -10,9 +10,10 @@ from scipy.optimize import minimize_scalar
 
 from momantu_bt.geometry import Array
 from momantu_skills.calibration.errors import CalibrationError
-from momantu_skills.calibration.hand_eye.estimate import LEAST_VIEWS, Estimate, estimate, solve
+from momantu_skills.calibration.hand_eye.estimate import LEAST_VIEWS, Estimate, estimate, rough
+from momantu_skills.calibration.hand_eye.linear import UNKNOWNS
 from momantu_skills.calibration.hand_eye.readings import Reading, better_reading
-from momantu_skills.calibration.hand_eye.refine import UNKNOWNS, refine
+from momantu_skills.calibration.hand_eye.robust import robust
 from momantu_skills.calibration.hand_eye.spread import check_spread
 from momantu_skills.calibration.hand_eye.views import Mounting, Views, residuals
 from momantu_skills.calibration.trajectory.pairing import distinct, paired
@@ -20,6 +21,8 @@ from momantu_skills.calibration.trajectory.time_offset import time_offset
 from momantu_skills.calibration.trajectory.trajectory import Trajectory
 
 _VIEWS_TO_ALIGN = 100
+_TOO_FAR = 20.0
+"""m; no robot moves its hand so far to look at a target that far away."""
 
 
 class MisreadError(CalibrationError):
@@ -88,6 +91,7 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
             f"{hand.name} and {target.name} hold the same poses; expected those of the hand in one "
             f"file, and those of the target in the camera's frame in the other"
         )
+    _check_metres(hand, target)
     offset = time_offset(hand, target) if settings.align else 0.0
     views, lines, matched = _views(hand, target, offset, settings)
     _check_count(len(views), matched, target)
@@ -102,6 +106,17 @@ def calibrate(hand: Trajectory, target: Trajectory, settings: Settings) -> Calib
     return Calibration(
         settings, hand, target, found, views, lines, len(target), matched, offset, turned
     )
+
+
+def _check_metres(hand: Trajectory, target: Trajectory) -> None:
+    """CalibrationError where both files are in another unit, which no residual shows."""
+    moves = float(np.linalg.norm(np.ptp(hand.positions, axis=0)))
+    away = float(np.median(np.linalg.norm(target.positions, axis=1)))
+    if min(moves, away) > _TOO_FAR:
+        raise CalibrationError(
+            f"the hand moves by {moves:.0f} m, and the target is {away:.0f} m from the camera: "
+            f"positions in {hand.name} and {target.name} are in millimetres or so; write metres"
+        )
 
 
 def _views(
@@ -135,7 +150,7 @@ def _refined_offset(
     poses, seen = paired(hand, target, offset, settings.gap)
     few = seen[distinct(poses, _VIEWS_TO_ALIGN)]
     views, _, _ = _views(hand, few, offset, settings)
-    start = solve(views, settings.seed)
+    start = rough(views, settings.seed)
 
     def cost(change: float) -> float:
         changed, _, _ = _views(hand, few, offset + change, settings)
@@ -148,6 +163,6 @@ def _refined_offset(
 
 def _misfit(views: Views, mounting: Mounting, noise: tuple[float, float]) -> float:
     """The mean residual of the best mounting, in units of given noise; one view counts little."""
-    turned, away = residuals(views, refine(views, mounting).mounting)
+    turned, away = residuals(views, robust(views, mounting).mounting)
     squares = (turned / noise[0]) ** 2 + (away / noise[1]) ** 2
     return float(np.mean(np.log1p(squares / (UNKNOWNS / 2))))

@@ -25,7 +25,7 @@ def refuse_wrong(path: Path, description: RobotDescription) -> None:
     Raises:
         InputError: it is no robot file, or another robot's, or cannot be written.
     """
-    file = _file(path)
+    file = file_of(path)
     if not file.is_file():
         source = description.source
         copy = "" if source is None else f"; make a copy first: cp -r {source.parent} {file.parent}"
@@ -38,7 +38,7 @@ def refuse_wrong(path: Path, description: RobotDescription) -> None:
 
 def write(path: Path, found: Calibrated) -> None:
     """Replace the file's section `calibration`, or add one; the rest stays as it is."""
-    file = _file(path)
+    file = file_of(path)
     source = found.robot.source
     before = Calibration() if source is None else read_robot_file(source).calibration
     text = file.read_text(encoding="utf-8")
@@ -72,5 +72,6 @@ def _section(calibration: Calibration) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _file(path: Path) -> Path:
+def file_of(path: Path) -> Path:
+    """The robot file that a path means: itself, or the one in the folder."""
     return path / FILE if path.is_dir() else path

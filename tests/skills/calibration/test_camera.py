@@ -8,14 +8,24 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from momantu_skills.calibration.camera.board import Board, Seen
+from momantu_skills.calibration.camera.board import Board, Seen, find
 from momantu_skills.calibration.camera.lens import fit
 from momantu_skills.calibration.camera.pictures import read_pictures
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.models import Model
 
 from momantu_bt.cli import main
-from tests.skills.scenery.boards import CHESSBOARD, DISTORTION, MATRIX, SIZE, folder, seen
+from momantu_bt.robots.plugins import load_robot
+from tests.skills.scenery.boards import (
+    CHESSBOARD,
+    DISTORTION,
+    MATRIX,
+    SIZE,
+    folder,
+    picture,
+    places,
+    seen,
+)
 
 CHARUCO = Board("charuco", 7, 5, 0.03, 0.022)
 APRILGRID = Board("aprilgrid", 4, 3, 0.04, gap=0.01)
@@ -51,6 +61,29 @@ def test_a_wrong_picture_does_not_count() -> None:
     assert found.matrix == pytest.approx(right.matrix, abs=2.0)
 
 
+def test_a_wrong_point_does_not_count() -> None:
+    pictures = seen(Model.PINHOLE, 0.1)
+    right = fit(CHESSBOARD, pictures, SIZE, Model.PINHOLE)
+    pictures[5].pixels[7] += (0.0, 3.0)
+    found = fit(CHESSBOARD, pictures, SIZE, Model.PINHOLE)
+    assert found.used.all()
+    assert [list(np.flatnonzero(~each)) for each in found.kept] == [[]] * 5 + [[7]] + [[]] * 8
+    assert found.matrix == pytest.approx(right.matrix, abs=0.5)
+
+
+@pytest.mark.parametrize("index", range(4))
+def test_corners_are_where_the_board_has_them(index: int) -> None:
+    turn, shift = places(1, 4)[index]
+    shown = find(CHESSBOARD, np.asarray(picture(CHESSBOARD, turn, shift), dtype=np.uint8))
+    assert shown is not None
+    exact, _ = cv2.projectPoints(CHESSBOARD.points(), turn, shift, MATRIX, np.zeros(5))
+    true = np.asarray(exact, dtype=float).reshape(-1, 2)
+    both = [each - true for each in (shown.pixels, shown.pixels[::-1])]
+    off = min(both, key=lambda each: float(abs(each).max()))  # a turned board looks the same
+    assert np.sqrt((off**2).sum(axis=1).mean()) < 0.09
+    assert abs(off.mean(axis=0)).max() < 0.02
+
+
 def test_a_board_that_is_never_tilted_tells_no_focal_length() -> None:
     pictures = []
     for shift in np.random.default_rng(0).uniform((-0.2, -0.1, 0.3), (0.0, 0.0, 0.5), (8, 3)):
@@ -65,6 +98,42 @@ def run(capsys: pytest.CaptureFixture[str], *options: object) -> tuple[int, str]
     code = main(["calibrate", "camera", *map(str, options)])
     shown = capsys.readouterr()
     return code, shown.out if code == 0 else shown.err
+
+
+def test_a_lens_is_written_into_a_robot_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = load_robot("fetch").source
+    assert source is not None
+    file = tmp_path / "robot.yaml"
+    file.write_text(source.read_text("utf-8"), "utf-8")
+    pictures = folder(tmp_path / "in", CHESSBOARD, 9)
+    code, said = run(capsys, pictures, *CHESS, "--write", file, "--sensor", "head_camera")
+    assert code == 0, said
+    assert "head_camera: field of view 60.00 -> 63." in said
+    before, after = source.read_text("utf-8").splitlines(), file.read_text("utf-8").splitlines()
+    changed = [(a, b) for a, b in zip(before, after, strict=True) if a != b]
+    assert [each[0].split(":")[0].strip() for each in changed] == ["horizontal_fov"]
+    assert load_robot(str(file)).camera()[1].horizontal_fov == pytest.approx(1.1036, abs=0.01)
+
+
+def test_robot_files_that_take_no_lens(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = load_robot("fetch").source
+    assert source is not None
+    file, pictures = tmp_path / "robot.yaml", folder(tmp_path / "in", CHESSBOARD, 5)
+    assert "there is no robot file" in run(capsys, pictures, *CHESS, "--write", file)[1]
+    assert "--sensor names a camera of" in run(capsys, pictures, *CHESS, "--sensor", "x")[1]
+    text = source.read_text("utf-8")
+    file.write_text(text, "utf-8")
+    said = run(capsys, pictures, *CHESS, "--write", file, "--sensor", "hand_camera")[1]
+    assert "has no camera 'hand_camera'" in said
+    assert "head_camera" in said
+    block = text[text.index("  head_camera:") : text.index("  laser:")]
+    flow = ", ".join(line.split("#")[0].strip() for line in block.splitlines()[1:])
+    file.write_text(text.replace(block, f"  head_camera: {{{flow}}}\n"), "utf-8")
+    code, said = run(capsys, pictures, *CHESS, "--write", file)
+    assert code == 2
+    assert "head_camera is not written with a key in each line" in said
 
 
 CHESS = ("--board", "chessboard 9x6", "--square", "25mm")
@@ -113,6 +182,31 @@ def test_pictures_of_an_aprilgrid(tmp_path: Path, capsys: pytest.CaptureFixture[
     lens = fit(APRILGRID, shown.seen, shown.size, Model.PINHOLE)
     assert lens.error < 0.5
     assert lens.matrix[0, 0] == pytest.approx(MATRIX[0, 0], rel=0.02)
+
+
+def test_mirrored_pictures_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pictures = folder(tmp_path / "in", CHARUCO, 5)
+    for file in pictures.iterdir():
+        shown = cv2.imread(str(file))
+        assert shown is not None
+        cv2.imwrite(str(file), shown[:, ::-1])
+    code, said = run(
+        capsys, pictures, "--board", "charuco 7x5", "--square", "30mm", "--marker", "22mm"
+    )
+    assert code == 2
+    assert "00.png shows it mirrored: is the picture flipped, or the print?" in said
+
+
+def test_a_charuco_board_of_an_old_print_is_found() -> None:
+    old = Board("charuco", 7, 6, 0.03, 0.022)
+    family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    print_of = cv2.aruco.CharucoBoard((7, 6), old.square, old.marker, family)
+    print_of.setLegacyPattern(True)
+    flat = np.pad(np.asarray(print_of.generateImage((420, 360))), 40, constant_values=255)
+    shown = find(old, flat)
+    assert shown is not None
+    assert len(shown.indices) == 30
+    assert shown.pixels[0] == pytest.approx((40 + 60 - 0.5, 40 + 60 - 0.5), abs=0.3)
 
 
 @pytest.fixture(scope="module")

@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.hand_eye.closed_form import METHODS, closed_form
-from momantu_skills.calibration.hand_eye.estimate import JOINT, estimate, solve
+from momantu_skills.calibration.hand_eye.estimate import JOINT, estimate, rough, solve
+from momantu_skills.calibration.hand_eye.noise import PLACES
 from momantu_skills.calibration.hand_eye.readings import Reading, better_reading
-from momantu_skills.calibration.hand_eye.refine import scale_of_target
+from momantu_skills.calibration.hand_eye.refine import refine, scale_of_target
 from momantu_skills.calibration.hand_eye.spread import check_spread
 from momantu_skills.calibration.hand_eye.views import Views
 from momantu_skills.calibration.poses import Poses, quaternions, rotations_of_quaternions
 
-from tests.skills.scenery.eyes import SHIFT, TURN, errors, views
+from momantu_bt.geometry import Transform
+from tests.skills.scenery.eyes import SHIFT, TURN, errors, noisy_hand, views
 
 SETUPS = range(30)
 
@@ -83,6 +85,39 @@ def test_standard_deviations_are_those_of_the_errors() -> None:
     assert 2.0 < np.mean(squares) < 4.5  # chi-squared of three degrees has the mean 3
 
 
+def test_noise_is_told_by_where_it_acts() -> None:
+    """A turn of the hand moves the target, which tells the mounting twice as exactly."""
+    plain, weighed, shares = [], [], []
+    for seed in range(12):
+        exact, true, _ = views(seed)
+        noisy = noisy_hand(exact, seed, TURN, SHIFT)
+        start = rough(noisy, 0)
+        found = refine(noisy, start)
+        plain.append(errors(start.mounting.eye, true.eye)[1])
+        weighed.append(errors(found.mounting.eye, true.eye)[1])
+        shares.append(found.noise.shares)
+        assert found.noise.rotation == pytest.approx(TURN / np.sqrt(3.0), rel=0.4)
+    assert np.median(weighed) < 0.6 * np.median(plain)
+    assert PLACES[int(np.argmax(np.mean(shares, axis=0)))] == "carrier"
+
+
+@pytest.mark.parametrize("kind", ["mirrored", "another tag"])
+def test_views_that_are_wrong_in_the_same_way_are_found(kind: str) -> None:
+    """Five of 17, all off by the same transform: they agree with each other."""
+    off = {
+        "mirrored": Transform((0.16, 0.1, 0.0), (0.0, 0.0, 0.0, 1.0)),
+        "another tag": Transform((0.1, -0.2, 0.1), (0.8, 0.2, -0.5, 0.1)),
+    }[kind]
+    for seed in range(6):
+        noisy, true, _ = views(seed, 17, TURN, SHIFT)
+        seen, wrong = noisy.camera_from_target, np.arange(2, 17, 3)
+        bad = seen[wrong] @ Poses.of([off])
+        seen.rotations[wrong], seen.positions[wrong] = bad.rotations, bad.positions
+        found = solve(noisy, seed)
+        assert list(np.flatnonzero(found.outliers)) == list(wrong)
+        assert errors(found.mounting.eye, true.eye)[1] < 3.0
+
+
 def test_the_estimate_has_every_method_on_views_held_back() -> None:
     noisy, _, _ = views(1, 17, TURN, SHIFT)
     found = estimate(noisy, 0)
@@ -111,6 +146,16 @@ def w_first(poses: Poses) -> Poses:
     return Poses(rotations_of_quaternions(np.column_stack([z, w, x, y])), poses.positions)
 
 
+def mirrored(poses: Poses) -> Poses:
+    """In frames whose y is turned over, as left-handed ones have it."""
+    mirror = np.diag([1.0, -1.0, 1.0])
+    return Poses(mirror @ poses.rotations @ mirror, poses.positions @ mirror)
+
+
+def turned_back(poses: Poses) -> Poses:
+    return Poses(np.swapaxes(poses.rotations, -1, -2), poses.positions)
+
+
 def test_files_that_are_read_wrongly_are_recognised() -> None:
     good, _, _ = views(3, 17, TURN, SHIFT, 3)
     hand, seen = good.outer, good.camera_from_target
@@ -122,6 +167,9 @@ def test_files_that_are_read_wrongly_are_recognised() -> None:
         Reading.TARGET_MILLIMETRES: Views(hand, scaled(seen, 1e3)),
         Reading.HAND_CENTIMETRES: Views(scaled(hand, 1e2), seen),
         Reading.TARGET_CENTIMETRES: Views(hand, scaled(seen, 1e2)),
+        Reading.MIRRORED: Views(hand, mirrored(seen)),
+        Reading.HAND_TURNED_BACK: Views(turned_back(hand), seen),
+        Reading.TARGET_TURNED_BACK: Views(hand, turned_back(seen.inverse()).inverse()),
         Reading.HAND_W_FIRST: Views(w_first(hand), seen),
         Reading.TARGET_W_FIRST: Views(hand, w_first(seen.inverse()).inverse()),
         Reading.BOTH_W_FIRST: Views(w_first(hand), w_first(seen)),

@@ -36,8 +36,14 @@ def read(path: Path, text: str) -> Trajectory:
         '"pose.orientation.x","pose.orientation.y","pose.orientation.z","pose.orientation.w"\n'
         "1.5,base,1,2,3,0,0,0.70710678,0.70710678\n",
         "\ufeff1.5, 1, 2, 3, 0, 0, 0.708, 0.707\r\n",
+        "t;x;y;z;qx;qy;qz;qw\n1,5;1,0;2;3;0;0;0,70710678;0,70710678\n",
+        '"1.5","1","2","3","0","0","0.70710678","0.70710678",\n',
+        "t,x,y,z,qx,qy,qz,qw,note\n1.5,1,2,3,0,0,0.70710678,0.70710678,\n",
     ],
-    ids=["csv", "tabs", "tum", "w first", "other order", "ros", "not quite unit"],
+    ids=[
+        *("csv", "tabs", "tum", "w first", "other order", "ros", "not quite unit"),
+        *("decimal commas", "quotes and a comma at the end", "an empty last column"),
+    ],
 )
 def test_files_are_read(tmp_path: Path, text: str) -> None:
     found = read(tmp_path / "a.csv", text)
@@ -62,8 +68,14 @@ GOOD = "0, 0, 0, 0, 0, 0, 0, 1\n"
         ("time,x,y,z,roll,pitch,yaw,w\n" + GOOD, "the header does not name the columns"),
         ("1, 0, 0, 0, 0, 0, 0, 1\n" + GOOD, ":2:1: error: t goes back by 1 s, from 1 in line 1"),
         (GOOD + "0, 1, 0, 0, 0, 0, 0, 1\n", ":2:1: error: another pose at the same time as in"),
+        (GOOD + "1, 0, , 0, 0, 0, 0, 1\n", ":2:7: error: y is ''; expected a finite number"),
+        ("0, 0, 0, 0, 0, 0, 0, 1, 9\n", "the row has 9 columns; expected t, x, y, z"),
+        ("t,x,y,z,roll,pitch,yaw\n" + GOOD, "angles are not read; write quaternions"),
     ],
-    ids=["empty", "comments", "nan", "word", "degrees", "columns", "header", "back", "two frames"],
+    ids=[
+        *("empty", "comments", "nan", "word", "degrees", "columns", "header", "back", "two frames"),
+        *("empty column", "more columns", "names of angles"),
+    ],
 )
 def test_wrong_files_are_refused_with_the_place(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(TrajectoryError) as error:

@@ -73,11 +73,10 @@ def tags(board: Board, edge: int) -> Array:
 def picture(board: Board, turn: Array, shift: Array, square: int = 40) -> Array:
     """A picture (480, 640) of the board by a pinhole camera without distortion."""
     rotation, _ = cv2.Rodrigues(turn)
-    # pixels of the sheet to metres of the board, whose first inner corner is its origin
+    # middles of the sheet's pixels to metres of the board, from its first inner corner
     scale = board.square / square
-    onto = np.array([[scale, 0, -2 * board.square], [0, scale, -2 * board.square], [0, 0, 1.0]])
-    if board.kind != "chessboard":
-        onto[:2, 2] = -board.square
+    onto = np.diag([scale, scale, 1.0])
+    onto[:2, 2] = 0.5 * scale - (2 if board.kind == "chessboard" else 1) * board.square
     away = MATRIX @ np.column_stack([rotation[:, 0], rotation[:, 1], shift]) @ onto
     flat = cv2.warpPerspective(sheet(board, square), away, SIZE, borderValue=(128,))
     return np.asarray(cv2.GaussianBlur(flat, (3, 3), 0.7))

@@ -40,6 +40,14 @@ def views(
     return Views(outer, noisy), Mounting(eye, target), chosen
 
 
+def noisy_hand(views: Views, seed: int, turn: float, shift: float) -> Views:
+    """The same views with noise of the hand's pose, about the hand."""
+    rng = np.random.default_rng(seed)
+    turns = rotations_of(vectors(rng, len(views), turn))
+    noise = Poses(turns, vectors(rng, len(views), shift))
+    return Views(views.outer @ noise, views.camera_from_target)
+
+
 def errors(found: Transform, true: Transform) -> tuple[float, float]:
     """The angle in deg and the distance in mm between two transforms."""
     apart = float(np.linalg.norm(found.position - true.position))

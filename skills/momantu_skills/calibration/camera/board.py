@@ -22,6 +22,10 @@ KINDS = ("chessboard", "charuco", "aprilgrid")
 _WORDS = re.compile(r"([a-z]+)[ :]+([0-9]+)x([0-9]+)")
 _WINDOW = (3, 3)
 """Half of the window in which a tag's corner is refined, px."""
+_SHARE, _MOST_WINDOW = 0.4, 15
+"""Half of a chessboard's window: this share of the smallest square's edge, at most so many px."""
+_ENDS = (3, 50, 0.001)
+"""cornerSubPix stops after 50 steps, or one below 0.001 px: OpenCV calls both criteria 3."""
 _LEAST_POINTS = 8
 """Of a board that may be partly hidden; fewer hardly tell where it is."""
 
@@ -129,24 +133,43 @@ def size_of_chessboard(gray: NDArray[np.uint8]) -> tuple[int, int] | None:
 
 
 def _find_corners(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_ACCURACY
     size = (board.columns, board.rows)
-    found, corners = cv2.findChessboardCornersSB(gray, size, None, flags)
-    if not found:
-        return None
-    pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
-    return Seen(np.arange(len(pixels)), pixels)
+    for more in (0, cv2.CALIB_CB_ACCURACY):  # the second enlarges the picture: small boards, slowly
+        found, corners = cv2.findChessboardCornersSB(
+            gray, size, None, cv2.CALIB_CB_NORMALIZE_IMAGE | more
+        )
+        if found:
+            grid = np.asarray(corners, dtype=float).reshape(board.rows, board.columns, 2)
+            pixels = _refined(gray, grid)
+            return Seen(np.arange(len(pixels)), pixels)
+    return None
+
+
+def _refined(gray: NDArray[np.uint8], corners: Array) -> Array:
+    """Corners (N, 2) where the edges in a window meet, from corners (rows, columns, 2).
+
+    The window is as large as the squares allow: what is found without one is off by 0.1 pixels and
+    more. A corner that it moves far is taken as it was.
+    """
+    sides = [np.linalg.norm(np.diff(corners, axis=axis), axis=2).min() for axis in (0, 1)]
+    half = int(np.clip(_SHARE * min(sides), 2, _MOST_WINDOW))
+    before = corners.reshape(-1, 1, 2)
+    after = cv2.cornerSubPix(gray, before.astype(np.float32), (half, half), (-1, -1), _ENDS)
+    near = np.linalg.norm(after - before, axis=2, keepdims=True) < max(1.0, half / 4)
+    return np.asarray(np.where(near, after, before), dtype=float).reshape(-1, 2)
 
 
 def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
     family = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{board.dictionary}"))
     size = (board.columns, board.rows)
     charuco = cv2.aruco.CharucoBoard(size, board.square, board.marker, family)
-    corners, ids, _, _ = cv2.aruco.CharucoDetector(charuco).detectBoard(gray)
-    if ids is None or len(ids) < _LEAST_POINTS:
-        return None
-    pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
-    return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)
+    for old in (False, True):  # OpenCV before 4.6 printed an even number of rows otherwise
+        charuco.setLegacyPattern(old)
+        corners, ids, _, _ = cv2.aruco.CharucoDetector(charuco).detectBoard(gray)
+        if ids is not None and len(ids) >= _LEAST_POINTS:
+            pixels = np.asarray(corners, dtype=float).reshape(-1, 2)
+            return Seen(np.asarray(ids).ravel().astype(np.intp), pixels)
+    return None
 
 
 def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
@@ -156,6 +179,5 @@ def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
         return None
     indices = 4 * np.repeat(own, 4) + np.tile(np.arange(4), len(own))
     pixels = np.concatenate([found[each] for each in own]).astype(np.float32)
-    ends = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 30, 0.01)
-    refined = cv2.cornerSubPix(gray, pixels.reshape(-1, 1, 2), _WINDOW, (-1, -1), ends)
+    refined = cv2.cornerSubPix(gray, pixels.reshape(-1, 1, 2), _WINDOW, (-1, -1), _ENDS)
     return Seen(indices.astype(np.intp), np.asarray(refined, dtype=float).reshape(-1, 2))

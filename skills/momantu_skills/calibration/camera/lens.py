@@ -21,8 +21,12 @@ with lazily():
 LEAST_PICTURES = 4
 _LEAST_TURN = np.radians(5.0)
 _OUTLIER = 3.0
-_LEAST_OUTLIER = 0.3
+_LEAST_OUTLIER = 0.1
 """A picture is wrong if its error is this many times the median, and at least so many pixels."""
+_POINT = 5.0
+_LEAST_POINT = 0.3
+_MOST_POINTS = 0.25
+"""So is a point, but if there are more than this share in a picture, they count: all may be off."""
 _ROUNDS = 4
 
 
@@ -40,7 +44,7 @@ class Lens:
 
     deviations: standard deviations (4 + C,) of fx, fy, cx, cy and the distortion. errors: root mean
     square error of each picture (N,), px. used: pictures (N,) that count. camera_from_board: (N).
-    residuals: of each picture (P, 2), px.
+    residuals: of each picture (P, 2), px. kept: of each picture (P,), which points count.
     """
 
     model: Model
@@ -51,16 +55,22 @@ class Lens:
     used: Mask
     camera_from_board: Poses
     residuals: tuple[Array, ...]
+    kept: tuple[Mask, ...]
+
+    @property
+    def counted(self) -> list[Array]:
+        """The residuals that count, of the pictures that count."""
+        rows = zip(self.residuals, self.kept, self.used, strict=True)
+        return [each[points] for each, points, used in rows if used]
 
     @property
     def error(self) -> float:
-        """Root mean square error of the pictures that count, px."""
-        chosen = [each for each, used in zip(self.residuals, self.used, strict=True) if used]
-        return float(np.sqrt(np.mean((np.concatenate(chosen) ** 2).sum(axis=1))))
+        """Root mean square error of what counts, px."""
+        return float(np.sqrt(np.mean((np.concatenate(self.counted) ** 2).sum(axis=1))))
 
 
 def fit(board: Board, seen: Sequence[Seen], size: tuple[int, int], model: Model) -> Lens:
-    """Estimate a lens; pictures that fit far worse than the others do not count.
+    """Estimate a lens; pictures and points that fit far worse than the others do not count.
 
     Args:
         board: the board.
@@ -72,25 +82,35 @@ def fit(board: Board, seen: Sequence[Seen], size: tuple[int, int], model: Model)
         CalibrationError: too few pictures are right, or all show the board from the same side.
     """
     used = np.ones(len(seen), dtype=bool)
+    kept = [np.ones(len(each.indices), dtype=bool) for each in seen]
     for _ in range(_ROUNDS):
         if used.sum() < LEAST_PICTURES:
             raise CalibrationError(
                 f"{used.sum()} pictures agree on a lens; at least {LEAST_PICTURES} are needed: is "
                 f"the board flat, and {board} what the pictures show?"
             )
-        matrix, distortion = _calibrated(board, _chosen(seen, used), size, model)
-        lens = _judged(board, seen, used, matrix, distortion, model)
+        matrix, distortion = _calibrated(board, _chosen(seen, used, kept), size, model)
+        lens = _judged(board, seen, used, kept, matrix, distortion, model)
         most = max(_OUTLIER * float(np.median(lens.errors[used])), _LEAST_OUTLIER)
-        fine = lens.errors <= most
-        if (fine == used).all():
+        before, used = (used, kept), lens.errors <= most
+        kept = _near(lens)
+        if (used == before[0]).all() and all(map(np.array_equal, kept, before[1])):
             break
-        used = fine
     _check_turns(lens)
     return lens
 
 
-def _chosen(seen: Sequence[Seen], used: Mask) -> list[Seen]:
-    return [each for each, wanted in zip(seen, used, strict=True) if wanted]
+def _near(lens: Lens) -> list[Mask]:
+    """Which points of each picture are not far off while the others fit."""
+    off = [np.linalg.norm(each, axis=1) for each in lens.residuals]
+    usual = np.median(np.linalg.norm(np.concatenate(lens.counted), axis=1))
+    near = [each <= max(_POINT * float(usual), _LEAST_POINT) for each in off]
+    return [each if each.mean() >= 1.0 - _MOST_POINTS else np.ones_like(each) for each in near]
+
+
+def _chosen(seen: Sequence[Seen], used: Mask, kept: Sequence[Mask]) -> list[Seen]:
+    rows = zip(seen, used, kept, strict=True)
+    return [Seen(each.indices[points], each.pixels[points]) for each, w, points in rows if w]
 
 
 def _calibrated(
@@ -122,29 +142,35 @@ def _calibrated(
 
 
 def _judged(
-    board: Board, seen: Sequence[Seen], used: Mask, matrix: Array, distortion: Array, model: Model
+    board: Board,
+    seen: Sequence[Seen],
+    used: Mask,
+    kept: Sequence[Mask],
+    matrix: Array,
+    distortion: Array,
+    model: Model,
 ) -> Lens:
-    """The lens with the residuals of all pictures, also those that did not count."""
-    points = board.points()
-    vectors, places, residuals, jacobians = [], [], [], []
-    for each in seen:
-        vector, place = _placed(points[each.indices], each.pixels, matrix, distortion, model)
-        pixels, jacobian = _projected(
-            points[each.indices], vector, place, matrix, distortion, model
-        )
+    """The lens with the residuals of all pictures and points, also those that did not count."""
+    vectors, places, residuals, jacobians, counted = [], [], [], [], []
+    for each, fine in zip(seen, kept, strict=True):
+        points = board.points()[each.indices]
+        vector, place = _placed(points[fine], each.pixels[fine], matrix, distortion, model)
+        pixels, jacobian = _projected(points, vector, place, matrix, distortion, model)
         vectors.append(vector)
         places.append(place)
         residuals.append(each.pixels - pixels)
-        jacobians.append(jacobian)
+        jacobians.append(jacobian[np.repeat(fine, 2)])
+        counted.append(residuals[-1][fine])
     return Lens(
         model,
         matrix,
         distortion,
-        _deviations(_of(jacobians, used), _of(residuals, used)),
-        np.array([np.sqrt((each**2).sum(axis=1).mean()) for each in residuals]),
+        _deviations(_of(jacobians, used), _of(counted, used)),
+        np.array([np.sqrt((each**2).sum(axis=1).mean()) for each in counted]),
         used,
         Poses(rotations_of(np.array(vectors)), np.array(places)),
         tuple(residuals),
+        tuple(kept),
     )
 
 

@@ -82,9 +82,16 @@ def png_of(color: NDArray[np.uint8]) -> bytes:
     return bytes(cv2.imencode(".png", cv2.cvtColor(color, cv2.COLOR_RGB2BGR))[1].tobytes())
 
 
+def _shows_mirrored(file: Path, board: Board) -> bool:
+    return find(board, np.ascontiguousarray(_gray(file)[:, ::-1])) is not None
+
+
 def _too_few(folder: Path, board: Board, count: int, files: list[Path]) -> str:
     how = f"{count} of {len(files)} pictures show" if count else "no picture shows"
     said = f"in {folder}, {how} a {board}; at least {LEAST_PICTURES} are needed"
+    mirrored = (file.name for file in files[:_ASKED] if _shows_mirrored(file, board))
+    if board.kind != "chessboard" and (name := next(mirrored, "")):
+        return f"{said}. {name} shows it mirrored: is the picture flipped, or the print?"
     sizes = []
     for file in files[:_ASKED] if board.kind == "chessboard" else []:
         found = size_of_chessboard(_gray(file))

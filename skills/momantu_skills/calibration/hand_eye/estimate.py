@@ -11,6 +11,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.hand_eye.closed_form import METHODS, closed_form
 from momantu_skills.calibration.hand_eye.refine import Refined, refine
+from momantu_skills.calibration.hand_eye.robust import Robust, robust
 from momantu_skills.calibration.hand_eye.start import (
     POSITION_NOISE,
     ROTATION_NOISE,
@@ -53,7 +54,16 @@ class Estimate:
 
 
 def solve(views: Views, seed: int) -> Refined:
-    """The joint refinement from the best of several robust starts.
+    """The joint refinement.
+
+    Raises:
+        CalibrationError: there are too few views, or they determine nothing.
+    """
+    return _refined(views, rough(views, seed))
+
+
+def rough(views: Views, seed: int) -> Robust:
+    """Robust least squares from the best of several starts.
 
     Raises:
         CalibrationError: there are too few views, or they determine nothing.
@@ -61,14 +71,25 @@ def solve(views: Views, seed: int) -> Refined:
     found = []
     for start in starts(views, np.random.default_rng(seed)):
         try:
-            found.append(refine(views, start.mounting))
+            found.append(robust(views, start.mounting))
         except np.linalg.LinAlgError:
             continue
     if not found:
-        raise CalibrationError(
-            "the views determine no mounting: turn the hand more, about two axes or more"
-        )
+        raise _undetermined()
     return min(found, key=lambda each: _typical(views, each.mounting))
+
+
+def _refined(views: Views, start: Robust) -> Refined:
+    try:
+        return refine(views, start)
+    except np.linalg.LinAlgError:
+        raise _undetermined() from None
+
+
+def _undetermined() -> CalibrationError:
+    return CalibrationError(
+        "the views determine no mounting: turn the hand more, about two axes or more"
+    )
 
 
 def estimate(views: Views, seed: int = 0) -> Estimate:
@@ -82,20 +103,20 @@ def estimate(views: Views, seed: int = 0) -> Estimate:
         raise CalibrationError(
             f"{len(views)} different views; at least {LEAST_VIEWS} are needed, 15 or more are good"
         )
-    refined = solve(views, seed)
-    _check_fit(views, refined)
+    start = rough(views, seed)
+    _check_fit(views, start)
+    refined = _refined(views, start)
     rotations, positions = residuals(views, refined.mounting)
     return Estimate(refined, _compared(views, refined, seed), rotations, positions)
 
 
-def _check_fit(views: Views, refined: Refined) -> None:
+def _check_fit(views: Views, found: Robust) -> None:
     """CalibrationError where the mounting explains hardly anything."""
     positions = views.camera_from_target.positions
     spread = np.linalg.norm(positions - np.median(positions, axis=0), axis=1)
     most = max(_UNEXPLAINED * float(np.median(spread)), _LEAST_SPREAD)
-    wrong = refined.outliers.mean() >= 0.5
-    if wrong or refined.noise[0] > _MOST_NOISE or refined.noise[1] > most:
-        turned, away = residuals(views, refined.mounting)
+    if found.right.mean() <= 0.5 or found.noise[0] > _MOST_NOISE or found.noise[1] > most:
+        turned, away = residuals(views, found.mounting)
         raise CalibrationError(
             f"the files do not fit together: half of the {len(views)} views are off by more than "
             f"{math.degrees(np.median(turned)):.1f} deg and {1e3 * np.median(away):.0f} mm. Are "

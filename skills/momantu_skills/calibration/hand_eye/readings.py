@@ -29,6 +29,9 @@ class Reading(Enum):
     TARGET_MILLIMETRES = "target in mm"
     HAND_CENTIMETRES = "hand in cm"
     TARGET_CENTIMETRES = "target in cm"
+    MIRRORED = "one against the other mirrored"
+    HAND_TURNED_BACK = "quaternions of the hand inverted, positions not"
+    TARGET_TURNED_BACK = "quaternions of the target inverted, positions not"
     HAND_W_FIRST = "quaternions of the hand w first"
     TARGET_W_FIRST = "quaternions of the target w first"
     BOTH_W_FIRST = "quaternions of both w first"
@@ -58,6 +61,9 @@ def _readings(views: Views) -> dict[Reading, list[Views]]:
     readings = {
         Reading.HAND_INVERTED: [Views(hand.inverse(), target)],
         Reading.TARGET_INVERTED: [Views(hand, target.inverse())],
+        Reading.MIRRORED: [Views(hand, _mirrored(target))],
+        Reading.HAND_TURNED_BACK: [Views(each, target) for each in _turned_back(hand)],
+        Reading.TARGET_TURNED_BACK: [Views(hand, each) for each in _turned_back(target)],
         Reading.HAND_W_FIRST: [Views(each, target) for each in _reordered(hand)],
         Reading.TARGET_W_FIRST: [Views(hand, each) for each in _reordered(target)],
         Reading.BOTH_W_FIRST: [Views(a, b) for a in _reordered(hand) for b in _reordered(target)],
@@ -79,6 +85,21 @@ def _extent(poses: Poses) -> float:
 
 def _scaled(poses: Poses, factor: float) -> Poses:
     return Poses(poses.rotations, poses.positions * factor)
+
+
+def _mirrored(poses: Poses) -> Poses:
+    """In a mirror, or a frame that is left-handed; which axis is turned makes no difference."""
+    mirror = np.diag([-1.0, 1.0, 1.0])
+    return Poses(mirror @ poses.rotations @ mirror, poses.positions @ mirror)
+
+
+def _turned_back(poses: Poses) -> list[Poses]:
+    """The poses with inverse rotations; the file may have held them or their inverse."""
+    turned = poses.inverse()
+    return [
+        Poses(np.swapaxes(poses.rotations, -1, -2), poses.positions),
+        Poses(np.swapaxes(turned.rotations, -1, -2), turned.positions).inverse(),
+    ]
 
 
 def _reordered(poses: Poses) -> list[Poses]:

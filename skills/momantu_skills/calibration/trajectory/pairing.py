@@ -67,10 +67,15 @@ def _no_overlap(hand: Trajectory, target: Trajectory, offset: float) -> str:
 
 def _unit(each: Trajectory, other: Trajectory) -> str:
     """The unit of the stamps of `each`, if those of `other` are in s; empty for s."""
-    if not other.times[0]:
-        return ""
-    ratio = abs(each.times[0] / other.times[0])
     for factor, unit in _FACTORS.items():
-        if 0.5 < ratio / factor < 2.0 and 1e-4 < each.step / factor < 10.0:
+        if not 1e-4 < each.step / factor < 10.0:
+            continue
+        if other.times[0] and 0.5 < abs(each.times[0] / other.times[0]) / factor < 2.0:
+            return unit
+        if other.step and 0.1 < _duration(each) / _duration(other) / factor < 10.0:
             return unit
     return ""
+
+
+def _duration(each: Trajectory) -> float:
+    return float(each.times[-1] - each.times[0])

@@ -33,7 +33,9 @@ _SPELLINGS = {
     "qz": "qz orientationz rotationz quaternionz quatz",
     "qw": "qw orientationw rotationw quaternionw quatw",
 }
+_EULER = frozenset({"roll", "pitch", "yaw", "rx", "ry", "rz", "rpy", "alpha", "beta", "gamma"})
 _COLUMN = {word: name for name, words in _SPELLINGS.items() for word in words.split()}
+_BLANK = " \t\r\"'"
 _UNITS = re.compile(r"[\[(].*?[\])]")
 
 
@@ -81,12 +83,12 @@ def read_trajectory(path: Path) -> Trajectory:
         TrajectoryError: the file is unreadable, or a row is wrong.
     """
     file = _File(path)
-    order, rows = _rows(file)
+    order, named, rows = _rows(file)
     if not rows:
         raise TrajectoryError(
             f"{path} has no poses; expected rows {', '.join(COLUMNS)}, in s and m"
         )
-    table = np.array([_numbers(file, row, order) for row in rows])
+    table = np.array([_numbers(file, row, order, named) for row in rows])
     quaternions = _unit(file, rows, table[:, 4:], order)
     kept = _ascending(file, rows, table, quaternions, order)
     return Trajectory(
@@ -98,9 +100,9 @@ def read_trajectory(path: Path) -> Trajectory:
     )
 
 
-def _rows(file: _File) -> tuple[tuple[int, ...], list[_Row]]:
-    """Which column each of t, x, … qw is, and the rows of numbers."""
-    order = tuple(range(len(COLUMNS)))
+def _rows(file: _File) -> tuple[tuple[int, ...], bool, list[_Row]]:
+    """Which column each of t, x, … qw is, whether a header says so, and the rows of numbers."""
+    order, named = tuple(range(len(COLUMNS))), False
     rows: list[_Row] = []
     for line, text in enumerate(file.text.splitlines(), 1):
         comment = text.lstrip().startswith("#")
@@ -109,30 +111,33 @@ def _rows(file: _File) -> tuple[tuple[int, ...], list[_Row]]:
             continue
         names = None if rows else _header(row)
         if names is not None:
-            order = names
+            order, named = names, True
         elif comment:
             continue
-        elif not rows and not any(map(_is_number, row.words)):
+        elif not rows and all(math.isnan(_number(word)) for word in row.words):
             raise file.error(
                 f"the header does not name the columns {', '.join(COLUMNS)}, each once",
-                row, None, "write it so, or begin the line with #",
+                row, None, _hint(row),
             )  # fmt: skip
         else:
             rows.append(row)
-    return order, rows
+    return order, named, rows
 
 
 def _row(line: int, text: str) -> _Row | None:
-    """The words of a line; None if it has none."""
-    pattern = r"[^,;]+" if re.search("[,;]", text) else r"\S+"
-    found = [
-        (m.start() + len(m[0]) - len(m[0].lstrip()), m[0].strip())
-        for m in re.finditer(pattern, text)
-        if m[0].strip()
-    ]
-    if not found:
+    """The words of a line, without quotes; None if it has none. Empty columns at the end go."""
+    parted = next((mark for mark in ";," if mark in text), "")
+    found = re.finditer(f"[^{parted}]+|(?<={parted})(?={parted})" if parted else r"\S+", text)
+    words = [(each[0].strip(_BLANK), _start(each)) for each in found]
+    while words and not words[-1][0]:
+        words.pop()
+    if not words:
         return None
-    return _Row(line, tuple(word for _, word in found), tuple(start for start, _ in found))
+    return _Row(line, tuple(word for word, _ in words), tuple(start for _, start in words))
+
+
+def _start(found: re.Match[str]) -> int:
+    return found.start() + len(found[0]) - len(found[0].lstrip(_BLANK))
 
 
 def _header(row: _Row) -> tuple[int, ...] | None:
@@ -156,29 +161,37 @@ def _named(word: str) -> str | None:
     return None
 
 
-def _is_number(word: str) -> bool:
+def _hint(row: _Row) -> str:
+    if any(word.lower() in _EULER for word in row.words):
+        return "angles are not read; write quaternions"
+    return "write it so, or begin the line with #"
+
+
+def _number(word: str) -> float:
+    """A number, also with a decimal comma; NaN if it is none."""
     try:
-        float(word)
+        return float(word.replace(",", "."))
     except ValueError:
-        return False
-    return True
+        return math.nan
 
 
-def _numbers(file: _File, row: _Row, order: tuple[int, ...]) -> list[float]:
-    """The eight numbers of a row, in the order of COLUMNS."""
-    if len(row.words) <= max(order):
+def _numbers(file: _File, row: _Row, order: tuple[int, ...], named: bool) -> list[float]:
+    """The eight numbers of a row, in the order of COLUMNS. named: whether a header names them."""
+    if len(row.words) <= max(order) or (len(row.words) > len(COLUMNS) and not named):
         raise file.error(
             f"the row has {len(row.words)} columns; expected {', '.join(COLUMNS)}",
-            row, None, "angles in degrees or matrices are not read; write quaternions",
+            row, None, "angles or matrices are not read, write quaternions; further columns need a "
+            "header that names all",
         )  # fmt: skip
     numbers = []
     for name, column in zip(COLUMNS, order, strict=True):
         word = row.words[column]
-        if not _is_number(word) or not math.isfinite(float(word)):
+        number = _number(word)
+        if not math.isfinite(number):
             raise file.error(
                 f"{name} is {word!r}; expected a finite number", row, column, "delete the row"
             )
-        numbers.append(float(word))
+        numbers.append(number)
     return numbers
 
 
