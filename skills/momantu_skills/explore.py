@@ -51,9 +51,9 @@ class Explore(Skill):
 
     SUCCESS: the robot knows the floor that it can get to on known floor, or `share` of it. What it
     cannot get to, and cannot see from where it can, stays unknown: the floor behind a gap that is
-    too narrow, for example; so do nooks that show less than 0.1 square metres for a metre of way,
-    which `known_share` counts as unknown. It drives on known floor only. What the camera shows on
-    the way is noted: `discover_surface` begins with the tops of tables among it.
+    too narrow, for example; so do nooks that show less than 0.04 % of the floor for a metre of way
+    and are less than 2 % of it together. It drives on known floor only. What the camera
+    shows on the way is noted: `discover_surface` begins with the tops of tables among it.
     """
 
     share: int = In(

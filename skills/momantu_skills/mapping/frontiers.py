@@ -37,9 +37,11 @@ GROWN = 0.1
 """Distance from an obstacle within which nothing is looked at, m: no gap of 20 cm leads on."""
 LEAST_GAIN = 0.2
 """Unknown floor that is worth a look, square metres."""
-WORTH = 0.1
-"""Unknown floor that is worth a metre of way, square metres: a nook of half a metre by one is worth
-5 m."""
+WORTH = 0.0004
+"""Share of the known floor that is worth a metre of way: where 250 square metres are known, a nook
+of one square metre is worth 10 m."""
+SPARED = 0.02
+"""Largest share of the floor that is left unknown because it is not worth the way."""
 FADES = 5.0
 """Way over which a gain fades to a third, m: what is near is looked at before the base goes away
 from it, and a room that is far away has to be large."""
@@ -65,15 +67,16 @@ class Prospect:
         """The gain, faded by the way to it."""
         return self.gain * math.exp(-self.way / FADES)
 
-    @property
-    def worth(self) -> bool:
-        """Whether so much unknown floor is worth the way."""
-        return self.gain >= max(LEAST_GAIN, WORTH * self.way)
+    def worth(self, known: float) -> bool:
+        """Whether so much unknown floor is worth the way where `known` square metres are known."""
+        return self.gain >= WORTH * known * self.way
 
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
     """All looks that are worth their way, best first, and the share of the floor that is known.
+
+    If those that are not worth it would show more than `SPARED` of the floor, they are too.
 
     share: known floor over itself and the unknown floor that looks would show, 0..1; those too that
     are not worth their way.
@@ -129,11 +132,15 @@ def outlook(
         if prospect is not None:
             seen |= shown
             found.append(prospect)
-    worth = [prospect for prospect in found if prospect.worth]
-    worth.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
     known = np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED))
     left = np.count_nonzero(seen)
-    return Outlook(tuple(worth), known / (known + left) if known + left else 0.0)
+    share = known / (known + left) if known + left else 0.0
+    area = float(known * grid.resolution**2)
+    worth = [prospect for prospect in found if prospect.worth(area)]
+    if not worth and share < 1.0 - SPARED:
+        worth = found
+    worth.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
+    return Outlook(tuple(worth), share)
 
 
 def in_sight(grid: GridMap, x: float, y: float) -> list[tuple[float, float]]:
