@@ -27,9 +27,10 @@ APART = 0.5
 """Edge of the squares in which one frontier cell stands for all, m."""
 FEWEST = 2
 """Fewest frontier cells in a square: single ones lie between the beams of far scans."""
-FAR, NEAR = 4.0, 1.5
-"""How far from a frontier the base stands to look at it, m: from afar where that shows enough, and
-otherwise, or where that was in vain, from near."""
+FAR, NEAR, BESIDE = 4.0, 1.5, 0.7
+"""How far from a frontier the base may stand to look at it, m. From afar a look costs less way; from
+beside it also shows a nook that lies sideways. Where a look from afar was in vain, one from near
+follows."""
 SIGHT = 4.0
 """How far a look counts, m: farther beams lie too far apart."""
 RAYS = 180
@@ -132,10 +133,10 @@ def outlook(
         if prospect is not None:
             seen |= shown
             found.append(prospect)
-    known = np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED))
-    left = np.count_nonzero(seen)
+    known = int(np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED)))
+    left = int(np.count_nonzero(seen))
     share = known / (known + left) if known + left else 0.0
-    area = float(known * grid.resolution**2)
+    area = known * grid.resolution**2
     worth = [prospect for prospect in found if prospect.worth(area)]
     if not worth and share < 1.0 - SPARED:
         worth = found
@@ -163,23 +164,21 @@ def _among(place: tuple[float, float], others: Sequence[tuple[float, float]]) ->
 def _prospect(
     grid: GridMap, views: Field, cell: tuple[int, int], *, far: bool
 ) -> tuple[Prospect | None, NDArray[np.bool_]]:
-    """The look at a frontier cell, from afar if that shows enough, and the floor that it shows.
-
-    None: no look shows enough.
-    """
+    """The best look at a frontier cell, and the floor that it shows; None: none shows enough."""
     x, y = grid.centre(*cell)
-    seen = np.zeros(grid.cells.shape, dtype=np.bool_)
-    for reach in (FAR, NEAR) if far else (NEAR,):
+    best, shown = None, np.zeros(0, dtype=np.bool_)
+    for reach in (FAR, NEAR, BESIDE) if far else (NEAR, BESIDE):
         at = _view(grid.cells, views, *cell, reach / grid.resolution, float(UNREACHED))
         if at[0] < 0:
             continue
-        seen[:] = False
+        seen = np.zeros(grid.cells.shape, dtype=np.bool_)
         gain = gain_at(grid, *at, seen)
-        if gain >= LEAST_GAIN:
-            vx, vy = grid.centre(*at)
-            yaw = math.atan2(y - vy, x - vx) if at != cell else 0.0
-            return Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(views[at])), seen
-    return None, seen
+        vx, vy = grid.centre(*at)
+        yaw = math.atan2(y - vy, x - vx) if at != cell else 0.0
+        look = Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(views[at]))
+        if gain >= LEAST_GAIN and (best is None or look.score > best.score):
+            best, shown = look, seen
+    return best, shown
 
 
 def gain_at(grid: GridMap, row: int, column: int, seen: NDArray[np.bool_] | None = None) -> float:
