@@ -28,8 +28,8 @@ APART = 0.5
 FEWEST = 2
 """Fewest frontier cells in a square: single ones lie between the beams of far scans."""
 FAR, NEAR, BESIDE = 4.0, 1.5, 0.7
-"""How far from a frontier the base may stand to look at it, m. From afar a look costs less way; from
-beside it also shows a nook that lies sideways. Where a look from afar was in vain, one from near
+"""How far from a frontier the base may stand to look at it, m. From afar a look costs less way; one
+from beside it shows a nook that lies sideways. Where a look from afar was in vain, one from near
 follows."""
 SIGHT = 4.0
 """How far a look counts, m: farther beams lie too far apart."""

@@ -80,7 +80,7 @@ def test_a_nook_that_lies_sideways_is_seen_from_beside_it():
 
 
 def test_a_look_from_afar_is_followed_by_one_from_near():
-    costmap = hall(20.0, (4.0,), depth=3.0)
+    costmap = hall(20.0, (4.0,))
     far = looks(costmap, 4.0).prospects[0]
     near = looks(costmap, 4.0, vain=[far.frontier]).prospects
     again = next(each for each in near if each.frontier == far.frontier)
