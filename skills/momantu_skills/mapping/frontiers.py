@@ -1,8 +1,8 @@
 """Frontiers: where known floor meets unknown floor, and what a look from near them would show.
 
 Yamauchi: A frontier-based approach for autonomous exploration (CIRA 1997); the gain of a look is
-counted by rays, as in Gonzalez-Banos and Latombe: Navigation strategies for exploring indoor
-environments (IJRR 2002).
+counted by rays, and fades with the way to it, as in Gonzalez-Banos and Latombe: Navigation
+strategies for exploring indoor environments (IJRR 2002).
 """
 
 from __future__ import annotations
@@ -27,8 +27,10 @@ APART = 0.5
 """Edge of the squares in which one frontier cell stands for all, m."""
 FEWEST = 2
 """Fewest frontier cells in a square: single ones lie between the beams of far scans."""
-NEAR = 1.5
-"""How far from a frontier the base may stand to look at it, m."""
+FAR, NEAR, BESIDE = 4.0, 1.5, 0.7
+"""How far from a frontier the base may stand to look at it, m. From afar a look costs less way; one
+from beside it shows a nook that lies sideways. Where a look from afar was in vain, one from near
+follows."""
 SIGHT = 4.0
 """How far a look counts, m: farther beams lie too far apart."""
 RAYS = 180
@@ -36,8 +38,14 @@ GROWN = 0.1
 """Distance from an obstacle within which nothing is looked at, m: no gap of 20 cm leads on."""
 LEAST_GAIN = 0.2
 """Unknown floor that is worth a look, square metres."""
-TURN_UP = 1.0
-"""Way that every look costs beside its own, m: to stop, turn and see."""
+WORTH = 0.0004
+"""Share of the known floor that is worth a metre of way: where 250 square metres are known, a nook
+of one square metre is worth 10 m."""
+SPARED = 0.02
+"""Largest share of the floor that is left unknown because it is not worth the way."""
+FADES = 5.0
+"""Way over which a gain fades to a third, m: what is near is looked at before the base goes away
+from it, and a room that is far away has to be large."""
 SAME = 0.4
 """Distance within which a frontier counts as the same one, m."""
 
@@ -57,26 +65,49 @@ class Prospect:
 
     @property
     def score(self) -> float:
-        """Gain over way."""
-        return self.gain / (self.way + TURN_UP)
+        """The gain, faded by the way to it."""
+        return self.gain * math.exp(-self.way / FADES)
+
+    def worth(self, known: float) -> bool:
+        """Whether so much unknown floor is worth the way where `known` square metres are known."""
+        return self.gain >= WORTH * known * self.way
 
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
     """All looks that are worth their way, best first, and the share of the floor that is known.
 
-    share: known floor over itself and the unknown floor that the looks would show, 0..1.
+    If those that are not worth it would show more than `SPARED` of the floor, they are too.
+
+    share: known floor over itself and the unknown floor that looks would show, 0..1; those too that
+    are not worth their way.
     """
 
     prospects: tuple[Prospect, ...]
     share: float
 
 
-def thick(costmap: Costmap) -> GridMap:
-    """The map with its obstacles grown, which closes gaps between the hits of far beams."""
+def thick(costmap: Costmap, done: Sequence[tuple[float, float]] = ()) -> GridMap:
+    """The map with its obstacles grown, which closes gaps between the hits of far beams.
+
+    done: frontiers, map, m, that count as walls with what is near them.
+    """
     cells = costmap.grid.cells.copy()
     cells[costmap.known_field < GROWN] = OCCUPIED
+    for x, y in done:
+        _wall_up(cells, costmap.grid, x, y)
     return replace(costmap.grid, cells=frozen(cells))
+
+
+def _wall_up(cells: NDArray[np.uint8], grid: GridMap, x: float, y: float) -> None:
+    """Make what is unknown near a point occupied."""
+    row, column = grid.index(x, y)
+    reach = math.ceil(SAME / grid.resolution)
+    first_row, first_column = max(0, row - reach), max(0, column - reach)
+    window = cells[first_row : row + reach + 1, first_column : column + reach + 1]
+    rows, columns = np.indices(window.shape)
+    away = np.hypot(rows + first_row - row, columns + first_column - column)
+    window[(away * grid.resolution < SAME) & (window == UNKNOWN)] = OCCUPIED
 
 
 def outlook(
@@ -84,33 +115,70 @@ def outlook(
     cost: Field,
     stands: NDArray[np.bool_],
     done: Sequence[tuple[float, float]] = (),
+    vain: Sequence[tuple[float, float]] = (),
 ) -> Outlook:
     """What is left to explore.
 
     cost: (rows, columns) weighted metres from the base, `UNREACHED` where it cannot get. stands:
     (rows, columns) where it has room for any heading. done: frontiers that are left out, with what
-    is near them.
+    is near and behind them. vain: those at which a look from afar was in vain.
     """
-    grid = thick(costmap)
+    grid = thick(costmap, done)
     views = np.where(stands, cost, UNREACHED)
     seen = np.zeros(grid.cells.shape, dtype=np.bool_)
     found = []
     for row, column in _squares(grid):
-        x, y = grid.centre(row, column)
-        if any(math.hypot(x - a, y - b) < SAME for a, b in done):
-            continue
-        at = _view(grid.cells, views, row, column, NEAR / grid.resolution, float(UNREACHED))
+        place = grid.centre(row, column)
+        prospect, shown = _prospect(grid, views, (row, column), far=not _among(place, vain))
+        if prospect is not None:
+            seen |= shown
+            found.append(prospect)
+    known = int(np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED)))
+    left = int(np.count_nonzero(seen))
+    share = known / (known + left) if known + left else 0.0
+    area = known * grid.resolution**2
+    worth = [prospect for prospect in found if prospect.worth(area)]
+    if not worth and share < 1.0 - SPARED:
+        worth = found
+    worth.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
+    return Outlook(tuple(worth), share)
+
+
+def in_sight(grid: GridMap, x: float, y: float) -> list[tuple[float, float]]:
+    """The frontiers, map, m, that are seen from a point of a `thick` map, up to `FAR` away."""
+    row, column = grid.index(x, y)
+    cells = _squares(grid)
+    places = [grid.centre(*each) for each in cells]
+    return [
+        place
+        for each, place in zip(cells, places, strict=True)
+        if math.hypot(place[0] - x, place[1] - y) < FAR and _clear(grid.cells, row, column, *each)
+    ]
+
+
+def _among(place: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
+    """Whether a frontier is one of others, each of which stands for what is near it."""
+    return any(math.dist(place, other) < SAME for other in others)
+
+
+def _prospect(
+    grid: GridMap, views: Field, cell: tuple[int, int], *, far: bool
+) -> tuple[Prospect | None, NDArray[np.bool_]]:
+    """The best look at a frontier cell, and the floor that it shows; None: none shows enough."""
+    x, y = grid.centre(*cell)
+    best, shown = None, np.zeros(0, dtype=np.bool_)
+    for reach in (FAR, NEAR, BESIDE) if far else (NEAR, BESIDE):
+        at = _view(grid.cells, views, *cell, reach / grid.resolution, float(UNREACHED))
         if at[0] < 0:
             continue
+        seen = np.zeros(grid.cells.shape, dtype=np.bool_)
         gain = gain_at(grid, *at, seen)
-        if gain >= LEAST_GAIN:
-            vx, vy = grid.centre(*at)
-            yaw = math.atan2(y - vy, x - vx) if at != (row, column) else 0.0
-            found.append(Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(cost[at])))
-    found.sort(key=lambda prospect: (-prospect.score, prospect.frontier))
-    known = np.count_nonzero((costmap.grid.cells == FREE) & (cost < UNREACHED))
-    left = np.count_nonzero(seen) if found else 0
-    return Outlook(tuple(found), known / (known + left) if known + left else 0.0)
+        vx, vy = grid.centre(*at)
+        yaw = math.atan2(y - vy, x - vx) if at != cell else 0.0
+        look = Prospect((x, y), Pose2D(vx, vy, yaw), gain, float(views[at]))
+        if gain >= LEAST_GAIN and (best is None or look.score > best.score):
+            best, shown = look, seen
+    return best, shown
 
 
 def gain_at(grid: GridMap, row: int, column: int, seen: NDArray[np.bool_] | None = None) -> float:

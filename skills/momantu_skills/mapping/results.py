@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import shutil
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,10 +35,12 @@ SPATIAL_FILES = {CLOUD, OVERHANG, "overhang.pgm"}
 def check_folder(folder: Path, *, replace: bool = False) -> None:
     """Check that a map can be written into a folder: it is empty, or there is none yet.
 
+    It is made beside its final name, so what is above it must be writable: this is tried.
+
     replace: it may also hold a map, and nothing else.
 
     Raises:
-        OutputError: it holds files, or is one.
+        OutputError: it holds files, or is one, or what is above it is none or cannot be written.
     """
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder} is a file; choose a folder")
@@ -47,6 +50,14 @@ def check_folder(folder: Path, *, replace: bool = False) -> None:
     if not held <= FILES | SPATIAL_FILES:
         other = ", ".join(sorted(held - FILES - SPATIAL_FILES)[:3])
         raise OutputError(f"{folder} holds other files than a map's, such as {other}")
+    above = next((each for each in folder.absolute().parents if each.exists()), None)
+    try:
+        Path(tempfile.mkdtemp(prefix=".probe.", dir=above)).rmdir()
+    except OSError as error:
+        raise OutputError(
+            f"{folder} cannot be written: {above}: {error.strerror or error}; choose a folder "
+            "that is yours"
+        ) from None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,8 +104,8 @@ def write_folder(
             write_whole(draft / SURVEY, survey)
         write_map(draft / MAP, plan)
         _take_place(draft, folder)
-    except OutputError:
-        raise
+    except OutputError as error:
+        raise OutputError(str(error).replace(str(draft), str(folder))) from None
     except OSError as error:
         raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
     finally:

@@ -7,7 +7,9 @@ kept: they are entered again from their scans.
 from __future__ import annotations
 
 import io
+import struct
 import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,11 @@ from momantu_skills.navigation.matching.scan import ScanPoints
 from momantu_skills.navigation.matching.submap import Growing, Submap
 
 VERSION = 1
+_DAMAGED = (
+    *(OSError, ValueError, KeyError, IndexError, TypeError, EOFError, OverflowError, MemoryError),
+    *(zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError),
+)
+"""What numpy and zipfile raise for an archive that is cut off or has other bytes in it."""
 _NO_RAYS = Rays(np.zeros(2), np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=bool))
 
 
@@ -73,9 +80,7 @@ def read_stored(path: Path) -> Known:
                 )
             arrays = {name: file[name] for name in file.files}
         return _known(arrays)
-    except (OSError, ValueError, KeyError, IndexError, TypeError, EOFError) as error:
-        raise InputError(f"{path} is damaged, so the map cannot be extended: {error}") from None
-    except zipfile.BadZipFile as error:
+    except _DAMAGED as error:
         raise InputError(f"{path} is damaged, so the map cannot be extended: {error}") from None
 
 

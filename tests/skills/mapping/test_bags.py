@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -144,6 +146,50 @@ def _backwards() -> list[Message]:
 def test_what_is_no_log_is_told(messages, said, tmp_path) -> None:
     with pytest.raises(LogError, match=said):
         read_log(ros1(tmp_path / "way.bag", messages()))
+
+
+def _edited(messages: list[Message], kind: str, **changes: Any) -> list[Message]:
+    """The messages with other content in those of a kind."""
+    return [
+        (topic, each, stamp, {**told, **changes} if each.endswith(kind) else told)
+        for topic, each, stamp, told in messages
+    ]
+
+
+def _lost(x: float, w: float) -> dict[str, Any]:
+    """The pose of odometry that is none."""
+    where = {
+        "position": ("geometry_msgs/msg/Point", {"x": x, "y": 0.0, "z": 0.0}),
+        "orientation": ("geometry_msgs/msg/Quaternion", {"x": 0.0, "y": 0.0, "z": 0.0, "w": w}),
+    }
+    pose = {"pose": ("geometry_msgs/msg/Pose", where), "covariance": np.zeros(36)}
+    return {"pose": ("geometry_msgs/msg/PoseWithCovariance", pose)}
+
+
+def _by_odometry() -> list[Message]:
+    pairs = ((odometry(each), scan(each)) for each in WAY)
+    return [frame("base_link", "laser", FIRST, MOUNT), *itertools.chain(*pairs)]
+
+
+@pytest.mark.parametrize(("x", "w"), [(np.nan, 1.0), (1e300, 1.0), (0.0, 0.0)])
+def test_poses_that_are_none_are_left_out(x, w, tmp_path) -> None:
+    messages = _by_odometry()
+    at = next(n for n, each in enumerate(messages) if each[0] == "/odom") + 6
+    messages[at : at + 1] = _edited(messages[at : at + 1], "Odometry", **_lost(x, w))
+    log = read_log(ros2(tmp_path / "one", messages))
+    assert len(log.scans) == len(WAY)
+    assert all(abs(each.odom_from_base.x) < 100.0 for each in log.scans)
+    assert log.notes == ("left out 1 poses whose numbers are not finite, or no pose's",)
+    lost = _edited(messages, "Odometry", **_lost(x, w))
+    with pytest.raises(LogError, match=f"; {len(WAY)} poses were left out, as they are none"):
+        read_log(ros2(tmp_path / "all", lost))
+
+
+@pytest.mark.parametrize("increment", [np.nan, 0.0, 1.0])
+def test_scans_whose_beams_point_nowhere_are_told(increment, tmp_path) -> None:
+    messages = _edited(_by_odometry(), "LaserScan", angle_increment=increment)
+    with pytest.raises(LogError, match="expected beams over at most a turn"):
+        read_log(ros2(tmp_path / "way", messages))
 
 
 @pytest.mark.parametrize(("write", "name"), KINDS)

@@ -122,6 +122,16 @@ def test_a_log_that_is_cut_off_is_read_up_to_there(log):
         (["FLASER 1 abc 0 0 0 0 0 0 1 h 1"], "'abc' in the ranges is not a number"),
         ([flaser(1.0), "FLASER 1", "FLASER 1", "FLASER 1"], ":4:1: error: the line ends within"),
         ([flaser(50.0), flaser(1.0)], ":4:1: error: the clock runs backwards, from 50.0 to 1.0 s"),
+        (
+            [flaser(50.0 - k) for k in range(9)],
+            ":6:1: error: the clock runs backwards, from 50.0 to 47.0 s",
+        ),
+        (["FLASER 1 2.0 0 0 0 1e300 0 0 1 h 1"], "the odometry is 1e300 0 0, expected finite"),
+        (["FLASER 1 2.0 0 0 0 0 0 0 nan h 1"], "the stamp is nan, expected seconds"),
+        (
+            [flaser(float(k), beams=5 + k) for k in range(4)],
+            "the scans have 5 to 8 beams, and no number is that of most of them",
+        ),
     ],
 )
 def test_what_is_wrong_is_said(log, lines, says):

@@ -135,7 +135,9 @@ def test_a_foreign_map_cannot_be_extended(tmp_path, capsys):
         assert "no survey.npz beside the map" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("damage", ["cut off", "empty", "text", "version", "lacking"])
+@pytest.mark.parametrize(
+    "damage", ["cut off", "empty", "text", "zeros within", "version", "lacking"]
+)
 def test_a_damaged_survey_is_told(first, tmp_path, damage):
     folder = tmp_path / "map"
     folder.mkdir()
@@ -150,7 +152,9 @@ def test_a_damaged_survey_is_told(first, tmp_path, damage):
     elif damage == "lacking":
         np.savez_compressed(survey, version=np.array(1))
     else:
-        cut = {"cut off": whole[: len(whole) // 2], "empty": b"", "text": b"nothing"}
+        half = len(whole) // 2
+        cut = {"cut off": whole[:half], "empty": b"", "text": b"nothing"}
+        cut["zeros within"] = whole[:half] + bytes(50) + whole[half + 50 :]
         survey.write_bytes(cut[damage])
     said = "of version 99" if damage == "version" else "damaged"
     with pytest.raises(InputError, match=said):

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 
 import numpy as np
 import pytest
+from momantu_skills.mapping import building
 from momantu_skills.mapping import progress as shown
 from momantu_skills.mapping.logs import carmen
 from PIL import Image
@@ -73,6 +75,29 @@ def test_a_folder_with_files_is_refused(log, tmp_path, capsys):
     assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
     assert main(["map", "--log", str(log), "-o", str(tmp_path / "mine.txt")]) == 2
     assert "is a file; choose a folder" in capsys.readouterr().err
+
+
+def test_what_cannot_be_written_is_told_before_the_work(log, tmp_path, capsys, monkeypatch):
+    (tmp_path / "mine.txt").write_text("mine")
+    monkeypatch.setattr(building, "build", lambda *_: pytest.fail("the log was mapped"))
+    out = tmp_path / "mine.txt" / "map"
+    assert main(["map", "--log", str(log), "-o", str(out)]) == ExitCode.WRONG_INPUT
+    said = capsys.readouterr().err
+    assert f"{out} cannot be written: {tmp_path / 'mine.txt'}: Not a directory" in said
+    assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_full_disk_leaves_nothing(log, tmp_path, capsys):
+    out, soft = tmp_path / "map", resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, soft[1]))
+    try:
+        assert main(["map", "--log", str(log), "-o", str(out)]) == ExitCode.WRONG_INPUT
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, soft)
+    said = capsys.readouterr().err
+    assert f"{out}/" in said
+    assert "cannot be written: File too large" in said
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_bad_log_writes_nothing(tmp_path, capsys):

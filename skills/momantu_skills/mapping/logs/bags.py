@@ -16,7 +16,7 @@ from momantu_bt.geometry import Transform
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import LaserScan, frozen
 from momantu_skills.mapping.logs.log import Log, LogError
-from momantu_skills.mapping.logs.placed import Published, placed
+from momantu_skills.mapping.logs.placed import Published, placed, pose_of
 
 with lazily():
     import apsw
@@ -47,7 +47,7 @@ def read_bag(path: Path, topic: str | None = None) -> Log:
             if connection.msgtype == SCAN:
                 told.scans.append(_scan(message))
             elif connection.msgtype == ODOMETRY:
-                told.odometry.append(_odometry(message))
+                told.moved(*_odometry(message))
             else:
                 _frames(message, told)
     if not told.scans:
@@ -120,7 +120,7 @@ def _scan(message: Any) -> LaserScan:
     )
 
 
-def _odometry(message: Any) -> tuple[str, str, float, Transform]:
+def _odometry(message: Any) -> tuple[str, str, float, Transform | None]:
     pose = message.pose.pose
     there = _transform(pose.position, pose.orientation)
     return message.header.frame_id, message.child_frame_id, _stamp(message), there
@@ -129,11 +129,11 @@ def _odometry(message: Any) -> tuple[str, str, float, Transform]:
 def _frames(message: Any, told: Published) -> None:
     for each in message.transforms:
         pose = _transform(each.transform.translation, each.transform.rotation)
-        told.transforms.add(each.header.frame_id, each.child_frame_id, _stamp(each), pose)
+        told.frame(each.header.frame_id, each.child_frame_id, _stamp(each), pose)
 
 
-def _transform(position: Any, rotation: Any) -> Transform:
-    return Transform(
+def _transform(position: Any, rotation: Any) -> Transform | None:
+    return pose_of(
         (position.x, position.y, position.z), (rotation.w, rotation.x, rotation.y, rotation.z)
     )
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
-from momantu_skills.mapping.logs.cleaning import alike, backwards, no_return
+from momantu_skills.mapping.logs.cleaning import alike, backwards, is_place, no_return
 from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
 from momantu_skills.navigation.map.sensing import Rays
 
@@ -71,7 +71,7 @@ def read_carmen(path: Path) -> Log:
     )
     whole = [reading for reading in readings if reading.odom is not None]
     whole = whole or list(_with_odometry(path, readings, odometry))
-    scans, odd = alike(whole, lambda reading: reading.ranges.size)
+    scans, odd = alike(path, whole, lambda reading: reading.ranges.size)
     return Log(tuple(_scans(scans)), (*notes, *odd))
 
 
@@ -139,8 +139,8 @@ def _is_number(word: str) -> bool:
 
 def _pose(words: Sequence[str], what: str) -> Pose2D:
     numbers = _numbers(words, what)
-    if not all(map(math.isfinite, numbers)):
-        raise _BrokenLineError(f"{what} is {' '.join(words)}, expected finite numbers")
+    if not (is_place(*numbers[:2]) and math.isfinite(numbers[2])):
+        raise _BrokenLineError(f"{what} is {' '.join(words)}, expected finite metres and radians")
     return Pose2D(numbers[0], numbers[1], math.remainder(numbers[2], math.tau))
 
 
@@ -157,8 +157,15 @@ def _count(words: Sequence[str], at: int, what: str) -> int:
     return int(word)
 
 
+def _stamp(words: Sequence[str], at: int) -> float:
+    stamp = _numbers(_take(words, at, 1, "the stamp"), "the stamp")[0]
+    if not math.isfinite(stamp):
+        raise _BrokenLineError(f"the stamp is {words[at]}, expected seconds")
+    return stamp
+
+
 def _odom(words: Sequence[str]) -> tuple[float, Pose2D]:
-    stamp = _numbers(_take(words, 7, 1, "the stamp"), "the stamp")[0]
+    stamp = _stamp(words, 7)
     return stamp, _pose(_take(words, 1, 3, "the pose"), "the pose")
 
 
@@ -168,7 +175,7 @@ def _flaser(line: int, words: Sequence[str]) -> _Reading:
     at = 2 + count
     laser = _pose(_take(words, at, 3, "the laser's pose"), "the laser's pose")
     odom = _pose(_take(words, at + 3, 3, "the odometry"), "the odometry")
-    stamp = _numbers(_take(words, at + 6, 1, "the stamp"), "the stamp")[0]
+    stamp = _stamp(words, at + 6)
     return _Reading(line, stamp, ranges, _half_turn(count), math.inf, odom, laser)
 
 
@@ -192,13 +199,13 @@ def _robotlaser(line: int, words: Sequence[str]) -> _Reading:
     at, ranges, angles, farthest = _laser_head(words)
     laser = _pose(_take(words, at, 3, "the laser's pose"), "the laser's pose")
     odom = _pose(_take(words, at + 3, 3, "the robot's pose"), "the robot's pose")
-    stamp = _numbers(_take(words, at + 11, 1, "the stamp"), "the stamp")[0]
+    stamp = _stamp(words, at + 11)
     return _Reading(line, stamp, ranges, angles, farthest, odom, laser)
 
 
 def _rawlaser(line: int, words: Sequence[str]) -> _Reading:
     at, ranges, angles, farthest = _laser_head(words)
-    stamp = _numbers(_take(words, at, 1, "the stamp"), "the stamp")[0]
+    stamp = _stamp(words, at)
     return _Reading(line, stamp, ranges, angles, farthest, None, None)
 
 

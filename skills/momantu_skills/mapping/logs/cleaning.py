@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -16,6 +17,10 @@ Scan = TypeVar("Scan")
 
 JITTER = 2.0
 """How far back a stamp may lie behind the one before, s: loggers on two machines."""
+MOST_ODD = 0.5
+"""Largest share of scans with another number of beams: with more, nothing is usual."""
+FARTHEST = 1e6
+"""Where odometry may lie at most, m: what is farther away is no pose."""
 _AT_MOST = 0.005
 """Share of beams at the greatest range from which on it means that nothing was hit."""
 
@@ -26,26 +31,43 @@ def backwards(stamps: Sequence[float], error: Callable[[int, str, str], LogError
     error: makes the error for the scan of an index, with what is wrong and what to do.
 
     Raises:
-        LogError: the clock jumps back.
+        LogError: the clock jumps back, or goes back little by little.
     """
-    count = 0
+    count, newest = 0, -math.inf
     for index, (before, after) in enumerate(itertools.pairwise(stamps), 1):
-        if after < before - JITTER:
-            message = f"the clock runs backwards, from {before} to {after} s"
+        newest = max(newest, before)
+        if after < newest - JITTER:
+            message = f"the clock runs backwards, from {newest} to {after} s"
             raise error(index, message, "two logs in one file are two maps: split the file here")
         count += after < before
     return [f"{count} scans have an earlier stamp than the one before"] if count else []
 
 
-def alike(scans: Sequence[Scan], beams: Callable[[Scan], int]) -> tuple[list[Scan], list[str]]:
-    """Those scans that have the usual number of beams, and a note of the others."""
+def alike(
+    path: Path, scans: Sequence[Scan], beams: Callable[[Scan], int]
+) -> tuple[list[Scan], list[str]]:
+    """Those scans that have the usual number of beams, and a note of the others.
+
+    Raises:
+        LogError: most scans have other numbers.
+    """
     counts = [beams(scan) for scan in scans]
     usual = max(counts, key=counts.count)
     same = [scan for scan, count in zip(scans, counts, strict=True) if count == usual]
     if len(same) == len(scans):
         return same, []
     others = len(scans) - len(same)
+    if others > MOST_ODD * len(scans):
+        raise LogError(
+            f"{path}: the scans have {min(counts)} to {max(counts)} beams, and no number is that "
+            f"of most of them; expected one laser, whose scans have as many beams each"
+        )
     return same, [f"left out {others} scans that have not {usual} beams as the others"]
+
+
+def is_place(*metres: float) -> bool:
+    """Whether coordinates, m, may be those of a base: finite, and not beyond `FARTHEST`."""
+    return all(abs(each) < FARTHEST for each in metres)
 
 
 def no_return(ranges: Array) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import LaserScan
-from momantu_skills.mapping.logs.cleaning import alike, backwards, no_return
+from momantu_skills.mapping.logs.cleaning import alike, backwards, is_place, no_return
 from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
 from momantu_skills.mapping.logs.transforms import Transforms, plain
 from momantu_skills.navigation.map.sensing import Rays
@@ -24,12 +25,36 @@ LEVEL = 0.985
 class Published:
     """What a log tells. scans: of one laser.
 
-    odometry: (odom, base, stamp, `odom_from_base`), of messages that tell nothing else.
+    odometry: (odom, base, stamp, `odom_from_base`), of messages that tell nothing else. broken: how
+    many poses were left out, as they are none; see `pose_of`.
     """
 
     scans: list[LaserScan] = field(default_factory=list)
     transforms: Transforms = field(default_factory=Transforms)
     odometry: list[tuple[str, str, float, Transform]] = field(default_factory=list)
+    broken: int = 0
+
+    def frame(self, parent: str, child: str, stamp: float, pose: Transform | None) -> None:
+        """Enter `parent_from_child` at a time, s; None counts as broken."""
+        if pose is None:
+            self.broken += 1
+        else:
+            self.transforms.add(parent, child, stamp, pose)
+
+    def moved(self, odom: str, base: str, stamp: float, pose: Transform | None) -> None:
+        """Enter `odom_from_base` at a time, s; None counts as broken."""
+        if pose is None:
+            self.broken += 1
+        else:
+            self.odometry.append((odom, base, stamp, pose))
+
+
+def pose_of(position: Sequence[float], quaternion: Sequence[float]) -> Transform | None:
+    """The pose of a position, m, and a quaternion w x y z; None if their numbers are no pose."""
+    length = math.hypot(*quaternion)
+    if not is_place(*position) or not 0.0 < length < math.inf:
+        return None
+    return Transform(position, quaternion)
 
 
 def placed(path: Path, told: Published) -> Log:
@@ -39,8 +64,11 @@ def placed(path: Path, told: Published) -> Log:
         LogError: nothing tells how the base moved, the laser is not level, or the clock runs back.
     """
     frame = plain(told.scans[0].frame)
+    _check_angles(path, told.scans[0])
     odom, base, notes = _moving(path, frame, told)
-    scans, odd = alike(told.scans, lambda scan: scan.ranges.size)
+    if told.broken:
+        notes.append(f"left out {told.broken} poses whose numbers are not finite, or no pose's")
+    scans, odd = alike(path, told.scans, lambda scan: scan.ranges.size)
     notes += odd
     stamps = [scan.stamp for scan in scans]
     notes += backwards(stamps, lambda _, said, cure: LogError(f"{path}: {said}\n  {cure}"))
@@ -61,6 +89,18 @@ def placed(path: Path, told: Published) -> Log:
     return Log(tuple(found), tuple(notes))
 
 
+def _check_angles(path: Path, scan: LaserScan) -> None:
+    """Refuse scans whose beams point nowhere, or all in one direction."""
+    turned = abs(scan.angle_increment) * (scan.ranges.size - 1)
+    if scan.ranges.size < 2 or (math.isfinite(scan.angle_min) and 0.0 < turned < 3.0 * math.pi):
+        return
+    raise LogError(
+        f"{path}: the scans of {scan.frame!r} begin at {scan.angle_min:g} rad and have "
+        f"{scan.ranges.size} beams each {scan.angle_increment:g} rad apart; expected beams over at "
+        "most a turn"
+    )
+
+
 def _moving(path: Path, frame: str, told: Published) -> tuple[str, str, list[str]]:
     """The frames of odometry and of the base that moves in it, and notes."""
     chain = told.transforms.above(frame)
@@ -68,10 +108,11 @@ def _moving(path: Path, frame: str, told: Published) -> tuple[str, str, list[str
         if above in {plain(odom) for odom, *_ in told.odometry} or "odom" in above.lower():
             return above, below, []
     if not told.odometry:
+        broken = f"; {told.broken} poses were left out, as they are none" if told.broken else ""
         raise LogError(
             f"{path}: nothing tells how the base moved: above the laser's frame are "
             f"{' on '.join(chain)}, of which none is odometry; expected a transform to a frame "
-            "'odom' (/tf), or messages nav_msgs/Odometry"
+            f"'odom' (/tf), or messages nav_msgs/Odometry{broken}"
         )
     odom, base = plain(told.odometry[0][0]), plain(told.odometry[0][1])
     for _, _, stamp, pose in told.odometry:

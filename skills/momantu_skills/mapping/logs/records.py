@@ -17,10 +17,9 @@ import numpy as np
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader
 
-from momantu_bt.geometry import Transform
 from momantu_bt.messages import LaserScan, frozen
 from momantu_skills.mapping.logs.log import Log, LogError
-from momantu_skills.mapping.logs.placed import Published, placed
+from momantu_skills.mapping.logs.placed import Published, placed, pose_of
 
 SCAN, TF = "foxglove.LaserScan", "foxglove.FrameTransforms"
 
@@ -106,12 +105,10 @@ def _scan(message: Any) -> LaserScan:
 def _frames(message: Any, told: Published) -> None:
     for each in message["transforms"]:
         at, turned = each["translation"], each["rotation"]
-        pose = Transform(
+        pose = pose_of(
             (at["x"], at["y"], at["z"]), (turned["w"], turned["x"], turned["y"], turned["z"])
         )
-        told.transforms.add(
-            each["parent_frame_id"], each["child_frame_id"], _stamp(each["timestamp"]), pose
-        )
+        told.frame(each["parent_frame_id"], each["child_frame_id"], _stamp(each["timestamp"]), pose)
 
 
 def _stamp(told: Any) -> float:
