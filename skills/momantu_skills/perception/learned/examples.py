@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -129,7 +128,8 @@ def mirrored(seen: NDArray[np.float32], made: Targets) -> tuple[NDArray[np.float
     coordinates, offsets = made.coordinates[..., ::-1].copy(), made.offsets[..., ::-1].copy()
     coordinates[:, 1] *= -1.0
     offsets[0] *= -1.0
-    return seen, Targets(made.classes[:, ::-1], made.things[:, ::-1], coordinates, offsets)
+    flat = (part[:, ::-1] for part in (made.classes, made.things, made.weights))
+    return seen, Targets(*flat, coordinates, offsets)
 
 
 def recolored(seen: NDArray[np.float32], draw: np.random.Generator) -> NDArray[np.float32]:
@@ -139,24 +139,11 @@ def recolored(seen: NDArray[np.float32], draw: np.random.Generator) -> NDArray[n
     return seen
 
 
-def batch(made: Sequence[tuple[NDArray[np.float32], Targets]]) -> list[NDArray[np.generic]]:
-    """Examples as arrays of one size, with nothing around the smaller ones.
+def alone(seen: NDArray[np.float32], made: Targets) -> list[NDArray[np.generic]]:
+    """An example as arrays of a batch of one.
 
-    Returns: what is seen (n, c, h, w), classes and things (n, h/2, w/2), coordinates
-    (n, VALID, 3, h/2, w/2), offsets (n, 3, h/2, w/2). Cells of the border have the class -1.
+    Returns: what is seen (1, c, h, w), classes and things (1, h/2, w/2), weights (1, h/2, w/2),
+    coordinates (1, VALID, 3, h/2, w/2), offsets (1, 3, h/2, w/2).
     """
-    high = max(seen.shape[1] for seen, _ in made)
-    wide = max(seen.shape[2] for seen, _ in made)
-    count, cells = len(made), (high // 2, wide // 2)
-    first = made[0][1].coordinates.shape[:2]
-    seen = np.zeros((count, made[0][0].shape[0], high, wide), dtype=np.float32)
-    classes = np.full((count, *cells), -1, dtype=np.int64)
-    things = np.full((count, *cells), -1, dtype=np.int64)
-    coordinates = np.zeros((count, *first, *cells), dtype=np.float32)
-    offsets = np.zeros((count, 3, *cells), dtype=np.float32)
-    for n, (one, target) in enumerate(made):
-        h, w = target.classes.shape
-        seen[n, :, : 2 * h, : 2 * w] = one
-        classes[n, :h, :w], things[n, :h, :w] = target.classes, target.things
-        coordinates[n, :, :, :h, :w], offsets[n, :, :h, :w] = target.coordinates, target.offsets
-    return [seen, classes, things, coordinates, offsets]
+    parts = (seen, made.classes, made.things, made.weights, made.coordinates, made.offsets)
+    return [np.ascontiguousarray(part)[None] for part in parts]

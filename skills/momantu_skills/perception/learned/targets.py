@@ -26,6 +26,10 @@ STANDING = 0.7
 """Cosine of the tilt up to which an axis counts as upright."""
 HANDLE_CELLS = 8
 """Cells of a handle from which on it tells how a mug is turned."""
+USUAL_CELLS, MOST_WEIGHT = 400, 2.5
+"""Cells of a usual thing, and the largest factor by which cells of smaller ones count more."""
+LYING_WEIGHT = 2.0
+"""Factor for cells of round things that lie or stand on their head."""
 OUTSIDE, OUTSIDE_LEAST = 1.04, 0.0015
 """A mug's cell belongs to its handle beyond this share of the radius and so many metres more."""
 
@@ -43,11 +47,12 @@ class Truth(NamedTuple):
 class Targets:
     """Of each cell (h, w). classes: index in CLASSES. things: index of the thing, or -1.
 
-    coordinates: (VALID, 3, h, w), offsets: (3, h, w); both valid where `things` is not -1.
+    weights: how much a cell counts, as it is one of few or of an uncommon kind. coordinates: (VALID, 3, h, w), offsets: (3, h, w); both valid where `things` is not -1.
     """
 
     classes: NDArray[np.int64]
     things: NDArray[np.int64]
+    weights: NDArray[np.float32]
     coordinates: NDArray[np.float32]
     offsets: NDArray[np.float32]
 
@@ -61,6 +66,7 @@ def targets(
     """
     shape = numbers.shape
     classes, things = np.zeros(shape, dtype=np.int64), np.full(shape, -1, dtype=np.int64)
+    weights = np.ones(shape, dtype=np.float32)
     coordinates = np.zeros((VALID, 3, *shape), dtype=np.float32)
     offsets = np.zeros((3, *shape), dtype=np.float32)
     known = np.isfinite(points[..., 2])
@@ -79,12 +85,23 @@ def targets(
         else:
             turned = False
         things[here] = index
+        weights[seen] = _weight(int(here.sum()), truth, name)
         offsets[:, here] = ((truth.level_from_object.position - points[here]) / OFFSET_UNIT).T
         own = own / float(np.linalg.norm(truth.size))
         choices = _equal(own, truth, name, np.array([0.0, 0.0, eye]), turned=turned)
         for k in range(VALID):
             coordinates[k, :, here] = choices[k % len(choices)].astype(np.float32)
-    return Targets(classes, things, coordinates, offsets)
+    return Targets(classes, things, weights, coordinates, offsets)
+
+
+def _weight(cells: int, truth: Truth, name: str) -> float:
+    """How much a cell of a thing counts: things shall count alike, be they small or large.
+
+    Round things that do not stand count more: few lie, and of those the turn is harder to see.
+    """
+    standing = name == "box" or truth.level_from_object.rotation[2, 2] > STANDING
+    balance = math.sqrt(USUAL_CELLS / cells)
+    return min(max(balance, 1.0 / MOST_WEIGHT), MOST_WEIGHT) * (1.0 if standing else LYING_WEIGHT)
 
 
 def _equal(own: Array, truth: Truth, name: str, eye: Array, *, turned: bool) -> list[Array]:
