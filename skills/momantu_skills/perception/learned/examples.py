@@ -12,7 +12,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.labelled import Labelled, read
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import depth_inside
-from momantu_skills.perception.learned.crops import Crop, channels, cut
+from momantu_skills.perception.learned.crops import Crop, channels, cut, mirror
 from momantu_skills.perception.learned.standing import standing
 from momantu_skills.perception.learned.targets import Targets, Truth, targets
 from momantu_skills.perception.objects.matching import KNOWN
@@ -123,8 +123,7 @@ def _truth(row: Array) -> Truth:
 
 def mirrored(seen: NDArray[np.float32], made: Targets) -> tuple[NDArray[np.float32], Targets]:
     """The example as in a mirror; things of all categories have mirror images of their kind."""
-    seen = seen[:, :, ::-1].copy()
-    seen[1] *= -1.0
+    seen = mirror(seen)
     coordinates, offsets = made.coordinates[..., ::-1].copy(), made.offsets[..., ::-1].copy()
     coordinates[:, 1] *= -1.0
     offsets[0] *= -1.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
 from momantu_skills.perception.learned import weights
-from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels
+from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels, mirror
 from momantu_skills.perception.learned.instances import LEAST, instances
 from momantu_skills.perception.learned.network import CLASSES
 from momantu_skills.perception.learned.refining import Seen, refined
@@ -40,7 +40,7 @@ class Seeing:
         if int(shown.sum()) < LEAST:
             return []
         every = points
-        points, coordinates, offsets = points[shown], coordinates[shown], offsets[shown]
+        points, coordinates, offsets = points[shown], coordinates[:, shown], offsets[shown]
         chances, normals = chances[shown], normals[shown]
         owner = instances(points + OFFSET_UNIT * offsets)
         free = np.isfinite(every[:, 2]) & ~shown & (every[:, 2] > LOW)
@@ -54,7 +54,7 @@ class Seeing:
             mine = owner == number
             random = seeded("similarity", number, int(mine.sum()))
             thing = solid(
-                points[mine], coordinates[mine], of_category[mine], of_handle[mine], random
+                points[mine], coordinates[:, mine], of_category[mine], of_handle[mine], random
             )
             if thing is not None:
                 seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
@@ -62,22 +62,35 @@ class Seeing:
         return found
 
     def _said(self, layers: NDArray[np.float32]) -> tuple[Array, Array, Array]:
-        """Chances (n, classes), coordinates (n, 3), offsets (n, 3) of all cells.
+        """Chances (n, classes), coordinates (2, n, 3), offsets (n, 3) of all cells.
+
+        The network sees the crop and its mirror image, and both answers count.
 
         layers: (CHANNELS, h, w) of a crop.
         """
         before = torch.get_num_threads()
         torch.set_num_threads(1)
         try:
-            with torch.inference_mode():
-                seen = torch.from_numpy(layers)[None]
-                seen = seen.contiguous(memory_format=torch.channels_last)
-                scores, coordinates, offsets = self._network(seen)
-                parts = (scores.softmax(dim=1), coordinates, offsets)
-                chances, places, votes = (
-                    part[0].permute(1, 2, 0).reshape(-1, part.shape[1]).double().numpy()
-                    for part in parts
-                )
+            straight = self._answers(layers)
+            turned = self._answers(mirror(layers))
         finally:
             torch.set_num_threads(before)
-        return chances, places, votes
+        turned = [part[:, :, ::-1] for part in turned]
+        turned[1][1] *= -1.0
+        turned[2][0] *= -1.0
+        chances, places, votes = (
+            np.stack(both).reshape(2, len(both[0]), -1).transpose(0, 2, 1).astype(np.float64)
+            for both in zip(straight, turned, strict=True)
+        )
+        return chances.mean(axis=0), places, votes.mean(axis=0)
+
+    def _answers(self, layers: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+        """Chances, coordinates and offsets, each (k, h/2, w/2)."""
+        with torch.inference_mode():
+            seen = torch.from_numpy(np.ascontiguousarray(layers))[None]
+            seen = seen.contiguous(memory_format=torch.channels_last)
+            scores, coordinates, offsets = self._network(seen)
+            return [
+                part[0].contiguous().numpy()
+                for part in (scores.softmax(dim=1), coordinates, offsets)
+            ]

@@ -53,11 +53,14 @@ def solid(
 ) -> Solid | None:
     """The thing of some cells; None if no pose explains them.
 
-    points: (n, 3) in a level frame, m. coordinates: (n, 3) normalized. chances: (n, 5) of each
+    points: (n, 3) in a level frame, m. coordinates: (k, n, 3) normalized, k answers. chances: (n, 5) of each
     category of KNOWN. of_handle: (n,) which show a handle.
     """
     mean = chances.mean(axis=0)
     category = KNOWN[int(mean.argmax())]
+    count, said = len(points), len(coordinates)
+    coordinates = coordinates.reshape(-1, 3)
+    points, of_handle = np.tile(points, (said, 1)), np.tile(of_handle, said)
     found = fit(coordinates, points, TOLERANCE, DIAGONALS, random)
     if found is None:
         return None
@@ -71,9 +74,9 @@ def solid(
     middle = coordinates[found.fitting].mean(axis=0) * found.scale
     shift = points[found.fitting].mean(axis=0) - turn @ middle
     x, y, z = size.tolist()
-    handle = category == "mug" and int(of_handle.sum()) >= 4
+    handle = category == "mug" and int(of_handle.sum()) >= 4 * said
     pose = Transform.from_rotation(turn, shift)
-    return Solid(category, pose, (x, y, z), len(points), float(mean.max()), handle)
+    return Solid(category, pose, (x, y, z), count, float(mean.max()), handle)
 
 
 def _extent(body: Array, category: str) -> Array:

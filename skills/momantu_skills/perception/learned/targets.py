@@ -47,7 +47,8 @@ class Truth(NamedTuple):
 class Targets:
     """Of each cell (h, w). classes: index in CLASSES. things: index of the thing, or -1.
 
-    weights: how much a cell counts, as it is one of few or of an uncommon kind. coordinates: (VALID, 3, h, w), offsets: (3, h, w); both valid where `things` is not -1.
+    weights: how much a cell counts, as it is one of few or of an uncommon kind. coordinates:
+    (VALID, 3, h, w), offsets: (3, h, w); both valid where `things` is not -1.
     """
 
     classes: NDArray[np.int64]
