@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.labelled import Labelled, read
 from momantu_skills.perception.camera.cloud import points_from_depth
@@ -15,9 +17,8 @@ from momantu_skills.perception.geometry.regions import depth_inside
 from momantu_skills.perception.learned.crops import Crop, channels, cut, mirror
 from momantu_skills.perception.learned.standing import standing
 from momantu_skills.perception.learned.targets import Targets, Truth, targets
-from momantu_skills.perception.objects.matching import KNOWN
 
-FOLDER = "crops-1"
+FOLDER = "crops-2"
 """Where the crops are kept; its number changes with their kind."""
 SPAN = 0.03
 """How far from its true height a surface is looked for, m."""
@@ -31,10 +32,10 @@ class Example:
     def __init__(self, crop: Crop, numbers: NDArray[np.uint8], truths: list[Truth]) -> None:
         self.crop, self.numbers, self.truths = crop, numbers, truths
 
-    def arrays(self) -> tuple[NDArray[np.float32], Targets]:
-        """What the network sees and what it shall say."""
-        crop = self.crop
-        made = targets(crop.points[::2, ::2], self.numbers[::2, ::2], crop.eye, self.truths)
+    def arrays(self, classes: Sequence[str]) -> tuple[NDArray[np.float32], Targets]:
+        """What the network sees and what it shall say. classes: their names."""
+        crop, numbers = self.crop, self.numbers[::2, ::2]
+        made = targets(crop.points[::2, ::2], numbers, crop.eye, self.truths, classes)
         return channels(crop), made
 
 
@@ -55,12 +56,13 @@ def example(made: Labelled) -> Example | None:
     truths = [
         Truth(
             thing.number,
-            KNOWN.index(thing.category),
+            thing.category,
+            made.categories[thing.category],
             level_from_camera @ thing.camera_from_object,
             np.array(thing.size),
         )
         for thing in made.things
-        if thing.category in KNOWN
+        if thing.category in made.categories
     ]
     numbers = np.ascontiguousarray(made.numbers[crop.rows][:, crop.columns])
     return Example(crop, numbers, truths)
@@ -88,7 +90,6 @@ def _store(path: Path, found: Example | None) -> None:
     poses = [
         [
             t.number,
-            t.category,
             *t.level_from_object.position,
             *t.level_from_object.quaternion,
             *t.size,
@@ -102,7 +103,9 @@ def _store(path: Path, found: Example | None) -> None:
         color=crop.color,
         eye=np.array(crop.eye),
         numbers=found.numbers,
-        truths=np.array(poses, dtype=np.float64).reshape(-1, 12),
+        truths=np.array(poses, dtype=np.float64).reshape(-1, 11),
+        categories=np.array([t.category for t in found.truths], dtype=np.str_),
+        symmetries=np.array([str(t.symmetry) for t in found.truths], dtype=np.str_),
     )
 
 
@@ -113,12 +116,14 @@ def _load(path: Path) -> Example | None:
         points, color = data["points"], data["color"]
         rows, columns = np.arange(points.shape[0]), np.arange(points.shape[1])
         crop = Crop(points, color, Transform(), float(data["eye"]), rows, columns)
-        return Example(crop, data["numbers"], [_truth(row) for row in data["truths"]])
+        names, kinds = data["categories"].tolist(), data["symmetries"].tolist()
+        told = zip(data["truths"], names, kinds, strict=True)
+        return Example(crop, data["numbers"], [_truth(*each) for each in told])
 
 
-def _truth(row: Array) -> Truth:
-    pose = Transform(row[2:5], row[5:9])
-    return Truth(int(row[0]), int(row[1]), pose, row[9:12])
+def _truth(row: Array, category: str, symmetry: str) -> Truth:
+    pose = Transform(row[1:4], row[4:8])
+    return Truth(int(row[0]), category, Symmetry(symmetry), pose, row[8:11])
 
 
 def mirrored(seen: NDArray[np.float32], made: Targets) -> tuple[NDArray[np.float32], Targets]:
@@ -127,8 +132,8 @@ def mirrored(seen: NDArray[np.float32], made: Targets) -> tuple[NDArray[np.float
     coordinates, offsets = made.coordinates[..., ::-1].copy(), made.offsets[..., ::-1].copy()
     coordinates[:, 1] *= -1.0
     offsets[0] *= -1.0
-    flat = (part[:, ::-1] for part in (made.classes, made.things, made.weights))
-    return seen, Targets(*flat, coordinates, offsets)
+    classes, things, weights = made.classes[:, ::-1], made.things[:, ::-1], made.weights[:, ::-1]
+    return seen, Targets(classes, things, weights, coordinates, offsets)
 
 
 def recolored(seen: NDArray[np.float32], draw: np.random.Generator) -> NDArray[np.float32]:

@@ -9,8 +9,8 @@ COORDINATE_WEIGHT, OFFSET_WEIGHT = 12.0, 3.0
 """Weights beside that of the classes, at which all three fall alike."""
 BEND, BEND_OFFSET = 0.03, 0.05
 """Errors up to which the losses are square: of coordinates, and of offsets in units of 0.1 m."""
-CLASS_WEIGHTS = (0.4, 1.0, 1.0, 1.0, 1.0, 1.0, 1.5)
-"""Of the classes; most cells show nothing."""
+OF_NOTHING, OF_HANDLE = 0.4, 1.5
+"""Weights of these classes beside those of the categories; most cells show nothing."""
 
 
 def loss(
@@ -22,7 +22,9 @@ def loss(
     equally good coordinates those count, for each thing as a whole, that are nearest.
     """
     classes, things, weights, valid, true_offsets = truth
-    by_class = weights * scores.new_tensor(CLASS_WEIGHTS)[classes]
+    of_class = scores.new_ones(scores.shape[1])
+    of_class[0], of_class[-1] = OF_NOTHING, OF_HANDLE
+    by_class = weights * of_class[classes]
     each = nn.functional.cross_entropy(scores, classes, reduction="none")
     of_classes = (each * by_class).sum() / by_class.sum()
     n, y, x = torch.nonzero(things >= 0, as_tuple=True)

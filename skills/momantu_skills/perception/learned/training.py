@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from momantu_bt.errors import MomantuError
 from momantu_bt.geometry import Array
-from momantu_bt.labelled import seeds_in
+from momantu_bt.labelled import categories_in, seeds_in
 from momantu_bt.world import seeded
 from momantu_skills.perception.learned import examples, weights
 from momantu_skills.perception.learned.losses import COORDINATE_WEIGHT, OFFSET_WEIGHT, loss
@@ -81,7 +81,8 @@ def begin(folder: Path, plan: Plan, device: str, start: Path | None = None) -> T
             f"{folder}`"
         )
     torch.manual_seed(plan.seed)
-    network = Network() if start is None else weights.load(start)
+    categories = categories_in(folder)
+    network = Network(categories) if start is None else weights.load(start).knowing(categories)
     network = network.to(device).train()
     optimizer = torch.optim.AdamW(network.parameters(), lr=plan.rate, weight_decay=DECAY)
     return Training(folder, plan, seeds, network, optimizer, device)
@@ -163,7 +164,7 @@ def _drawn(training: Training, seed: int, epoch: int) -> tuple[Seen, Targets] | 
     if found is None:
         return None
     draw = seeded(training.plan.seed, "example", epoch, seed)
-    seen, made = found.arrays()
+    seen, made = found.arrays(training.network.classes)
     if draw.random() < 0.5:
         seen, made = examples.mirrored(seen, made)
     return examples.recolored(seen, draw), made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import math
 import subprocess
 import sys
@@ -18,11 +19,12 @@ from momantu_skills.perception.evaluation import boxes, measure, precision
 from momantu_skills.perception.learned import examples, training, weights
 from momantu_skills.perception.learned.crops import STEP, channels
 from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
-from momantu_skills.perception.learned.network import Network
-from momantu_skills.perception.learned.weights import WeightsError
+from momantu_skills.perception.learned.header import KIND, VERSION, WeightsError
+from momantu_skills.perception.learned.network import Network, classes_of
 from momantu_worlds.labelled.studio import Studio
 
 from momantu_bt import labelled
+from momantu_bt.categories import USUAL
 from momantu_bt.cli import main
 from momantu_bt.detector import DETECTORS, known_categories
 from momantu_bt.geometry import Pose2D
@@ -61,6 +63,7 @@ def test_weights_come_back_with_their_card(any_weights: Path) -> None:
 
 
 def spoil(path: Path, how: str) -> None:
+    told = {"kind": f"{KIND} {VERSION}", "categories": json.dumps(dict(USUAL))}
     if how == "missing":
         path.unlink()
     elif how == "text":
@@ -69,31 +72,35 @@ def spoil(path: Path, how: str) -> None:
         path.write_bytes(path.read_bytes()[:5000])
     elif how == "foreign":
         safetensors.torch.save_file({"a": torch.zeros(3)}, path)
+    elif how == "version":
+        safetensors.torch.save_file({"a": torch.zeros(3)}, path, metadata={"kind": f"{KIND} 1"})
     elif how == "other network":
         found = safetensors.torch.load_file(path)
         found.pop("head.bias")
-        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+        safetensors.torch.save_file(found, path, metadata=told)
     else:
         found = safetensors.torch.load_file(path)
         found["head.bias"][0] = float("nan")
-        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+        safetensors.torch.save_file(found, path, metadata=told)
 
 
 @pytest.mark.parametrize(
-    ("how", "said"),
+    ("how", "code", "said"),
     [
-        ("missing", "cannot be read"),
-        ("text", "cannot be read"),
-        ("cut", "cannot be read"),
-        ("foreign", "holds no weights of the learned detector"),
-        ("other network", "another network: 'head.bias'"),
-        ("nan", "not finite"),
+        ("missing", "WEIGHTS_BROKEN", "cannot be read"),
+        ("text", "WEIGHTS_BROKEN", "cannot be read"),
+        ("cut", "WEIGHTS_BROKEN", "cannot be read"),
+        ("foreign", "WEIGHTS_FOREIGN", "holds no weights of the learned detector"),
+        ("version", "WEIGHTS_OUTDATED", "of version 1, this detector uses version 2"),
+        ("other network", "WEIGHTS_FOREIGN", "another network: 'head.bias'"),
+        ("nan", "WEIGHTS_BROKEN", "not finite"),
     ],
 )
-def test_a_wrong_weights_file_is_told(how: str, said: str, any_weights: Path) -> None:
+def test_a_wrong_weights_file_is_told(how: str, code: str, said: str, any_weights: Path) -> None:
     spoil(any_weights, how)
-    with pytest.raises(WeightsError, match=said):
+    with pytest.raises(WeightsError, match=said) as raised:
         weights.load(any_weights)
+    assert raised.value.code == code
 
 
 def test_evaluate_tells_a_wrong_weights_file(
@@ -136,7 +143,7 @@ def test_crops_fit_the_network(pictures: Path) -> None:
     for seed in range(4):
         example = examples.example(labelled.read(pictures, seed))
         assert example is not None
-        seen, made = example.arrays()
+        seen, made = example.arrays(classes_of(USUAL))
         assert seen.shape[1] % STEP == seen.shape[2] % STEP == 0
         assert made.classes.shape == (seen.shape[1] // 2, seen.shape[2] // 2)
         assert np.isfinite(seen).all()
@@ -150,7 +157,7 @@ def test_kept_crops_are_the_same(pictures: Path) -> None:
     again = examples.kept(pictures, 0)
     assert fresh is not None
     assert again is not None
-    (one, first), (other, second) = fresh.arrays(), again.arrays()
+    (one, first), (other, second) = (e.arrays(classes_of(USUAL)) for e in (fresh, again))
     assert np.array_equal(one, other)
     assert np.allclose(first.coordinates, second.coordinates, atol=1e-6)
     damaged = pictures / examples.FOLDER / "000000.npz"
@@ -210,13 +217,27 @@ def test_a_training_that_cannot_begin_is_told(
     assert "belongs to a training with 4 pictures" in capsys.readouterr().err
 
 
-def test_a_search_with_broken_weights_fails_with_their_sentence(
+@pytest.mark.parametrize(
+    ("how", "asked", "code", "said"),
+    [
+        ("text", "can", "WEIGHTS_BROKEN", "cannot be read"),
+        ("foreign", "can", "WEIGHTS_FOREIGN", "holds no weights of the learned detector"),
+        ("version", "can", "WEIGHTS_OUTDATED", "of version 1"),
+        ("", "spray", "CATEGORY_UNKNOWN", "know no 'spray'; they know bottle, bowl, can, mug, box"),
+    ],
+)
+def test_a_search_says_why_the_weights_cannot_be_used(
+    how: str,
+    asked: str,
+    code: str,
+    said: str,
     onlooker: Callable[..., ScriptedRobot],
     seen_scene: Callable[[], object],
     any_weights: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    spoil(any_weights, "text")
+    if how:
+        spoil(any_weights, how)
     monkeypatch.setenv(WEIGHTS, str(any_weights))
     table = Surface(Pose2D(1.0, 0.0, 0.0), (0.6, 1.2), 0.72, (math.pi,))
     things = [Block((0.6, 1.2, 0.03), (1.0, 0.0, 0.705)), Round((0.95, 0.2, 0.72), 0.13, 0.035)]
@@ -225,10 +246,11 @@ def test_a_search_with_broken_weights_fails_with_their_sentence(
         robot=onlooker(things),
         site=scripted_site(surfaces={"table": table}),
         services={"planning_scene": seen_scene(), "localization": object()},
-        inputs={"object": ObjectClass("can"), "on": "table", "detector": "learned"},
+        inputs={"object": ObjectClass(asked), "on": "table", "detector": "learned"},
     )
-    assert result.failure.code == "SKILL_ERROR"
-    assert f"the weights {any_weights} cannot be read" in result.failure.message
+    assert result.failure.code == code
+    assert any_weights.name in result.failure.message
+    assert said in result.failure.message
 
 
 def test_the_bundled_weights_are_small_and_say_how_they_were_made() -> None:
