@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,7 +13,8 @@ from shapely.geometry import MultiPoint, Polygon
 from shapely.prepared import prep
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
-from momantu_worlds.labelled.shapes import CATEGORIES, Draw, Shape, draw_color, draw_shape
+from momantu_worlds.labelled.shapes import Draw, Shape, draw_color
+from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Part, Sphere
 from momantu_worlds.scenes.geometry.parts import block
 
@@ -54,24 +56,23 @@ class _Heap:
     ground: list[Polygon]
 
 
-def heap(draw: Draw, half: tuple[float, float], *, testing: bool) -> list[Laid]:
+def heap(draw: Draw, half: tuple[float, float], stock: Stock) -> list[Laid]:
     """Things around the origin of a surface.
 
-    half: half the extent (2,) of the free room around the origin, m. testing: families for testing.
+    half: half the extent (2,) of the free room around the origin, m. stock: where things are from.
     """
     made = _Heap((min(NEAR, half[0]), min(NEAR, half[1])), [], [])
     inside = 0
     if draw.random() < TRAY:
-        inside = _tray(draw, made, testing)
+        inside = _tray(draw, made, stock)
     if draw.random() < CLUTTER:
         for _ in range(int(draw.integers(1, 3))):
             _put(draw, made, f"clutter_{len(made.laid)}", None, _clutter(draw))
     for _ in range(max(1, int(draw.integers(3, 10)) - inside)):
-        category = CATEGORIES[int(draw.integers(len(CATEGORIES)))]
-        shape = draw_shape(category, draw, testing=testing)
+        shape = stock.shape(draw)
         if draw.random() < ON_TOP and _on_box(draw, made, shape):
             continue
-        _put(draw, made, f"{category}_{len(made.laid)}", shape, shape.parts)
+        _put(draw, made, f"{shape.category}_{len(made.laid)}", shape, shape.parts)
     return made.laid
 
 
@@ -128,7 +129,9 @@ def resting(draw: Draw, shape: Shape) -> Transform:
     """A pose in which a thing rests on z = 0 above the origin."""
     turn = Transform(quaternion=quaternion_from_axis_angle((0, 0, 1), draw.uniform(0, 2 * math.pi)))
     kind = draw.random()
-    if shape.profile is None:
+    if shape.lying:
+        lie = _mesh_lies(draw, kind, shape.lying)
+    elif shape.profile is None:
         lie = _box_lies(draw, kind)
     elif kind < UPRIGHT:
         lie = Transform()
@@ -147,6 +150,13 @@ def _box_lies(draw: Draw, kind: float) -> Transform:
         return Transform()
     axis = (0.0, 1.0, 0.0) if kind < 0.75 else (1.0, 0.0, 0.0)
     return Transform(quaternion=quaternion_from_axis_angle(axis, math.pi / 2))
+
+
+def _mesh_lies(draw: Draw, kind: float, lying: Sequence[Array]) -> Transform:
+    """A mesh as it stands in its file, or on one of its sides."""
+    if kind < UPRIGHT:
+        return Transform()
+    return Transform.from_rotation(lying[int(draw.integers(len(lying)))])
 
 
 def _on_side(draw: Draw, shape: Shape) -> Transform:
@@ -204,7 +214,7 @@ def _on_box(draw: Draw, made: _Heap, shape: Shape) -> bool:
     return False
 
 
-def _tray(draw: Draw, made: _Heap, testing: bool) -> int:
+def _tray(draw: Draw, made: _Heap, stock: Stock) -> int:
     """An open box with things in it; how many."""
     x, y = draw.uniform(0.12, 0.19), draw.uniform(0.14, 0.24)
     high, wall = draw.uniform(0.03, 0.10), draw.uniform(0.003, 0.01)
@@ -226,9 +236,8 @@ def _tray(draw: Draw, made: _Heap, testing: bool) -> int:
     if min(inner.half) < 0.02:
         return 0
     for _ in range(int(draw.integers(1, 5))):
-        category = CATEGORIES[int(draw.integers(len(CATEGORIES)))]
-        shape = draw_shape(category, draw, testing=testing)
-        _put(draw, inner, f"{category}_in_{len(inner.laid)}", shape, shape.parts)
+        shape = stock.shape(draw)
+        _put(draw, inner, f"{shape.category}_in_{len(inner.laid)}", shape, shape.parts)
     room = MultiPoint(pose.apply(_corners(parts))[:, :2]).convex_hull
     made.ground.append(room)
     made.laid.append(Laid("tray", None, parts, pose))
