@@ -19,7 +19,7 @@ from momantu_bt.labelled import Label, Labelled
 from momantu_bt.robot import CameraSensor
 from momantu_bt.world import WorldError, seeded
 from momantu_bt.world_plugins import WORLDS as ENTRIES
-from momantu_worlds.labelled.heaps import ARM, Laid, arm, heap
+from momantu_worlds.labelled.heaps import USUAL, Laid, Manner, arm, heap
 from momantu_worlds.labelled.own import OwnCategory
 from momantu_worlds.labelled.shapes import Draw, draw_color
 from momantu_worlds.labelled.stock import Stock
@@ -69,18 +69,23 @@ class Studio:
     """Renders labelled pictures in some worlds."""
 
     def __init__(
-        self, worlds: Sequence[str], *, testing: bool, own: tuple[OwnCategory, ...] = ()
+        self,
+        worlds: Sequence[str],
+        *,
+        testing: bool,
+        own: tuple[OwnCategory, ...] = (),
+        manner: Manner = USUAL,
     ) -> None:
         """worlds: names or files; none: WORLDS. testing: with the families kept for testing.
 
-        own: categories beside the usual ones.
+        own: categories beside the usual ones. manner: how heaps are made.
 
         Raises:
             PluginError: there is no such world.
             WorldError: a world is not described by a file.
         """
         self._worlds = [_file(world) for world in worlds or WORLDS]
-        self._stock = Stock(testing, own)
+        self._stock, self._manner = Stock(testing, own), manner
         self._set: _Set | None = None
 
     def picture(self, seed: int) -> Labelled:
@@ -98,7 +103,7 @@ class Studio:
             self._set = _Set(world, layout)
         for attempt in range(ATTEMPTS):
             draw = seeded(seed, "picture", attempt, "test" if self._stock.testing else "train")
-            made = self._set.take(draw, seed, self._stock)
+            made = self._set.take(draw, seed, self._stock, self._manner)
             if made is not None:
                 return replace(made, categories=self._stock.categories)
         raise WorldError(f"no view of seed {seed} in {world} shows a thing; leave this seed out")
@@ -135,7 +140,7 @@ class _Set:
         for entity in list(self.scene.entities):
             self.scene.remove_entity(entity)
 
-    def take(self, draw: Draw, seed: int, stock: Stock) -> Labelled | None:
+    def take(self, draw: Draw, seed: int, stock: Stock, manner: Manner) -> Labelled | None:
         """A picture of a new heap; None if none of it is seen."""
         table = self.tables[int(draw.integers(len(self.tables)))]
         half = np.array(table.size) / 2
@@ -144,9 +149,9 @@ class _Set:
         spot = draw.uniform(-1.0, 1.0, 2) * np.maximum(half - 0.22, 0.0)
         map_from_top = table.map_from_top @ Transform((*spot, 0.0))
         room = (float(half[0] - abs(spot[0])), float(half[1] - abs(spot[1])))
-        laid = heap(draw, room, stock)
+        laid = heap(draw, room, stock, manner)
         top_from_camera = _viewpoint(draw, table)
-        if draw.random() < ARM:
+        if draw.random() < manner.arm:
             laid = [*laid, arm(draw, top_from_camera.position)]
         self._relight(draw)
         entities = [self._add(each.parts, map_from_top @ each.top_from_thing) for each in laid]

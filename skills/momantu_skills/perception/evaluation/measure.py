@@ -30,7 +30,7 @@ OUTSIDE = 1.08
 
 def measured(made: Labelled, detector: ObjectDetector) -> Picture:
     """What a picture shows, and what a detector finds in it."""
-    view = _view(made)
+    view = view_of(made)
     low, high = made.height - SPAN, made.height + SPAN
     answer = detector.detect([view], low, high, ObjectClass(next(iter(made.categories)))) or ()
     camera_from_odom = made.odom_from_camera.inverse()
@@ -41,7 +41,8 @@ def measured(made: Labelled, detector: ObjectDetector) -> Picture:
     return Picture(_true(made), found)
 
 
-def _view(made: Labelled) -> View:
+def view_of(made: Labelled) -> View:
+    """A picture as a detector gets it, with the points near its surface."""
     optical = points_from_depth(made.image.depth, made.image.intrinsics, STRIDE)
     points = made.odom_from_camera.apply(optical)
     points = points[np.abs(points[:, 2] - made.height - (ABOVE - BELOW) / 2) < (ABOVE + BELOW) / 2]
