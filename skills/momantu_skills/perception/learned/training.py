@@ -51,7 +51,10 @@ class Plan:
 
 @dataclass(slots=True)
 class Training:
-    """A training as far as it is. step: batches so far, of `steps`. device: "cpu" or "cuda"."""
+    """A training as far as it is. step: batches so far, of `steps`. device: "cpu" or "cuda".
+
+    stop: batches after which it ends before the plan does.
+    """
 
     folder: Path
     plan: Plan
@@ -60,11 +63,17 @@ class Training:
     optimizer: torch.optim.Optimizer
     device: str
     step: int = 0
+    stop: int | None = None
 
     @property
     def steps(self) -> int:
-        """Batches in all."""
+        """Batches of the whole plan."""
         return self.plan.epochs * math.ceil(len(self.seeds) / self.plan.batch)
+
+    @property
+    def last(self) -> int:
+        """Batches after which it ends."""
+        return self.steps if self.stop is None else min(self.stop, self.steps)
 
 
 def begin(folder: Path, plan: Plan, device: str, start: Path | None = None) -> Training:
@@ -135,7 +144,7 @@ def go_on(training: Training, state: Path, tell: Callable[[str], None]) -> None:
             sums = 0.98 * sums + 0.02 * np.array(_step(training, made))
             if training.step % 50 == 0:
                 share = (training.step - first) / (time.monotonic() - start)
-                left = (training.steps - training.step) / share / 60
+                left = (training.last - training.step) / share / 60
                 weight = 1.0 - 0.98 ** (training.step - first)
                 told = " ".join(f"{value:.4f}" for value in sums / weight)
                 tell(f"batch {training.step} of {training.steps}: loss {told}, {left:.0f} min left")
@@ -150,10 +159,11 @@ def _batches(training: Training) -> Iterator[Sequence[tuple[Seen, Targets]]]:
     """The batches that are left, in the order of the training's seed."""
     plan = training.plan
     per_epoch = math.ceil(len(training.seeds) / plan.batch)
-    while training.step < training.steps:
+    while training.step < training.last:
         epoch, done = divmod(training.step, per_epoch)
         order = seeded(plan.seed, "order", epoch).permutation(np.array(training.seeds)).tolist()
-        for first in range(done * plan.batch, len(order), plan.batch):
+        end = min(len(order), done * plan.batch + (training.last - training.step) * plan.batch)
+        for first in range(done * plan.batch, end, plan.batch):
             made = (_drawn(training, seed, epoch) for seed in order[first : first + plan.batch])
             yield [each for each in made if each is not None]
 

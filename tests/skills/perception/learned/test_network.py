@@ -24,7 +24,7 @@ from momantu_skills.perception.learned.network import Network, classes_of
 from momantu_worlds.labelled.studio import Studio
 
 from momantu_bt import labelled
-from momantu_bt.categories import USUAL
+from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.cli import main
 from momantu_bt.detector import DETECTORS, known_categories
 from momantu_bt.geometry import Pose2D
@@ -184,6 +184,43 @@ def test_an_interrupted_training_ends_as_a_whole_one(pictures: Path, tmp_path: P
     assert rest.step == whole.step == 4
     for name, value in whole.network.state_dict().items():
         assert torch.allclose(value, rest.network.state_dict()[name], atol=1e-5), name
+
+
+def test_a_training_ends_before_its_plan_and_goes_on(pictures: Path, tmp_path: Path) -> None:
+    plan = training.Plan(epochs=3, batch=2, rate=1e-3, seed=3)
+    whole = trained(pictures, plan, tmp_path / "whole.state")
+    part = training.begin(pictures, plan, "cpu")
+    part.stop = 3
+    training.go_on(part, tmp_path / "part.state", lambda line: None)
+    assert part.step == 3
+    rest = trained(pictures, plan, tmp_path / "part.state")
+    assert rest.step == whole.step == 6
+    for name, value in whole.network.state_dict().items():
+        assert torch.allclose(value, rest.network.state_dict()[name], atol=1e-5), name
+
+
+def test_weights_that_learned_go_on_with_another_category(any_weights: Path) -> None:
+    known = weights.load(any_weights)
+    more = known.knowing({**USUAL, "spray": Symmetry.NONE})
+    assert more.classes == ("nothing", *USUAL, "spray", "handle")
+    seen = torch.zeros(1, 9, 32, 32)
+    (scores, *rest), (others, *same) = known(seen), more(seen)
+    assert all(torch.equal(one, other) for one, other in zip(rest, same, strict=True))
+    assert torch.equal(scores[:, :6], others[:, :6])
+    assert torch.equal(scores[:, 6], others[:, 7])
+    path = any_weights.with_name("more.safetensors")
+    weights.save(path, more, {})
+    assert weights.load(path).categories == more.categories
+
+
+def test_the_categories_are_those_of_the_weights(
+    any_weights: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    weights.save(any_weights, Network({**USUAL, "spray": Symmetry.NONE}), {})
+    assert LearnedDetector.categories == tuple(USUAL)
+    assert LearnedDetector(any_weights).categories == (*USUAL, "spray")
+    monkeypatch.setenv(WEIGHTS, str(any_weights))
+    assert "spray" in (known_categories() or ())
 
 
 def test_train_writes_weights_that_can_be_used(pictures: Path, tmp_path: Path) -> None:
