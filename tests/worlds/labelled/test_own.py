@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
+from momantu_skills.perception.learned.weights import BUNDLED
 from momantu_worlds.labelled.heaps import resting
 from momantu_worlds.labelled.own import own_category
 from momantu_worlds.labelled.stock import Stock
@@ -83,7 +86,9 @@ def test_a_mesh_rests_on_the_surface_and_would_not_tip_over(sprays: Path) -> Non
     assert 5 < leaning < 30
 
 
-def test_pictures_show_and_name_the_category(sprays: Path, tmp_path: Path) -> None:
+def test_from_meshes_to_weights_that_know_the_category(
+    sprays: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out = tmp_path / "pictures"
     command = ["perception", "render", "-o", str(out), "--seeds", "0:3", "--world", "four_rooms"]
     own = ["--meshes", str(sprays), "--category", "spray", "--scale", "0.001"]
@@ -91,6 +96,15 @@ def test_pictures_show_and_name_the_category(sprays: Path, tmp_path: Path) -> No
     assert labelled.categories_in(out) == {**USUAL, "spray": Symmetry.NONE}
     made = [labelled.read(out, seed) for seed in labelled.seeds_in(out)]
     assert sum(thing.category == "spray" for one in made for thing in one.things) >= 2
+    mine = tmp_path / "mine.safetensors"
+    train = ["perception", "train", str(out), "-o", str(mine), "--epochs", "1"]
+    assert main([*train, "--start", str(BUNDLED)]) == 0
+    assert LearnedDetector(mine).categories == (*USUAL, "spray")
+    monkeypatch.setenv(WEIGHTS, str(mine))
+    told = tmp_path / "told.json"
+    evaluate = ["perception", "evaluate", "--detector", "learned", "--pictures", str(out)]
+    assert main([*evaluate, "--seeds", "0:3", "--json", str(told)]) == 0
+    assert "spray" in json.loads(told.read_text())
 
 
 def test_without_meshes_the_pictures_stay_as_they_are(sprays: Path) -> None:
