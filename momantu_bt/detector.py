@@ -2,14 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Protocol
 
+from momantu_bt.errors import MomantuError
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.plugins import Group, PluginError
 from momantu_bt.service import Snapshot
+
+DETECTOR_FAILURES: Mapping[str, str] = MappingProxyType(
+    {
+        "WEIGHTS_BROKEN": "the detector's weights cannot be read",
+        "WEIGHTS_FOREIGN": "the file for the detector's weights holds something else",
+        "WEIGHTS_OUTDATED": "the detector's weights are of another version",
+        "CATEGORY_UNKNOWN": "the detector's weights do not know the category that is asked for",
+    }
+)
+"""Why a detector cannot look: code -> what it means."""
+
+
+class DetectorError(MomantuError):
+    """A detector cannot look, whatever the picture shows. code: one of DETECTOR_FAILURES."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +70,9 @@ class ObjectDetector(Protocol):
 
         Best score first; a score says how well an object matches `asked`. Poses are in odom, with
         the stamp of a view. None if no view shows such a surface.
+
+        Raises:
+            DetectorError: it cannot look, whatever the views show.
         """
         ...
 

@@ -8,8 +8,8 @@ bits, the number of the thing that is seen, or 0).
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Protocol
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from momantu_bt.categories import USUAL, Symmetry, categories_from
 from momantu_bt.errors import MomantuError
 from momantu_bt.formats.files import write_whole
 from momantu_bt.geometry import Array, Transform
@@ -61,6 +62,7 @@ class Labelled:
 
     odom_from_camera: where the camera is told to be, with errors of its mounting; odom is level.
     height: of the surface, m in odom. outline: (4, 2) its corners, odom. numbers: (h, w) uint8.
+    categories: all that such pictures may show.
     """
 
     seed: int
@@ -70,6 +72,7 @@ class Labelled:
     outline: Array
     numbers: NDArray[np.uint8]
     things: tuple[Label, ...]
+    categories: Mapping[str, Symmetry] = field(default_factory=lambda: USUAL)
 
 
 class Renderer(Protocol):
@@ -137,12 +140,38 @@ def read(folder: Path, seed: int) -> Labelled:
             np.array(labels["outline"], dtype=np.float64).reshape(-1, 2),
             numbers,
             things,
+            categories_from(labels.get("categories", USUAL)),
         )
     except _DAMAGED as error:
         raise LabelledError(
             f"{stem}.json and its pictures cannot be read: {error}; remove them and render seed "
             f"{seed} again"
         ) from None
+
+
+def categories_in(folder: Path) -> dict[str, Symmetry]:
+    """The categories that a folder's pictures may show, the usual ones first.
+
+    Raises:
+        LabelledError: a file is damaged, or two have different symmetries of one category.
+    """
+    found: dict[str, Symmetry] = {}
+    for seed in seeds_in(folder):
+        path = folder / f"{seed:06d}.json"
+        try:
+            told = categories_from(json.loads(path.read_text()).get("categories", USUAL))
+        except _DAMAGED as error:
+            raise LabelledError(
+                f"{path} cannot be read: {error}; render seed {seed} again"
+            ) from None
+        for name, symmetry in told.items():
+            if found.setdefault(name, symmetry) is not symmetry:
+                raise LabelledError(
+                    f"{path} has the category {name!r} with the symmetry {symmetry}, others in "
+                    f"{folder} with {found[name]}; render them into folders of their own"
+                )
+    first = [name for name in USUAL if name in found]
+    return {name: found[name] for name in (*first, *sorted(found.keys() - USUAL.keys()))}
 
 
 def read_all(folder: Path) -> Iterator[Labelled]:
@@ -155,6 +184,7 @@ def _labels(made: Labelled) -> dict[str, Any]:
     return {
         "momantu_labels": VERSION,
         "seed": made.seed,
+        "categories": {name: str(kind) for name, kind in made.categories.items()},
         "intrinsics": np.asarray(made.image.intrinsics).ravel().tolist(),
         "odom_from_camera": _numbers(made.odom_from_camera),
         "height": made.height,

@@ -8,7 +8,13 @@ from functools import partial
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
 from momantu_bt.descriptions.tunables import configured
-from momantu_bt.detector import DETECTORS, ObjectDetector, View
+from momantu_bt.detector import (
+    DETECTOR_FAILURES,
+    DETECTORS,
+    DetectorError,
+    ObjectDetector,
+    View,
+)
 from momantu_bt.failure import FailureValue
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
@@ -54,6 +60,7 @@ class DetectObject(Skill):
     failures = {
         "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
         "SURFACE_NOT_SEEN": "no picture showed a level surface where the site has one",
+        **DETECTOR_FAILURES,
     }
     uses = {CAMERA_CARRIER}
     senses = {"camera"}
@@ -96,7 +103,7 @@ class DetectObject(Skill):
         if result is None:
             raise self._unseen(len(snapshots))
         if best is None:
-            raise self._not_found(result)
+            raise self._not_found(result, finder)
         self.found = best
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
@@ -135,7 +142,10 @@ class DetectObject(Skill):
     ) -> tuple[DetectedObject, ...] | None:
         """What a detector finds in some views; what lies is measured by the points of all."""
         low, high = region.support_heights
-        found = finder.detect(views, low, high, self.object)
+        try:
+            found = finder.detect(views, low, high, self.object)
+        except DetectorError as error:
+            raise Failure(error.code, str(error)) from None
         if found is None:
             return None
         return lying.remeasured(found, views, low, high, self.object, finder.accepted)
@@ -158,9 +168,11 @@ class DetectObject(Skill):
             looks=looks,
         )
 
-    def _not_found(self, things: tuple[DetectedObject, ...]) -> Failure:
+    def _not_found(self, things: tuple[DetectedObject, ...], finder: ObjectDetector) -> Failure:
+        known = tuple(getattr(finder, "categories", matching.KNOWN))
+        told_apart = matching.MatchConfig(categories=known)
         seen = [_measured(thing) for thing in things]
-        why = [", ".join(matching.misfits(thing, self.object)) for thing in things]
+        why = [", ".join(matching.misfits(thing, self.object, told_apart)) for thing in things]
         told = (f"{thing}, {reason}" for thing, reason in zip(seen, why, strict=True))
         there = f"there: {'; '.join(told)}" if seen else "nothing stands there"
         return Failure(

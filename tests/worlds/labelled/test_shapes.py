@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from momantu_worlds.labelled.heaps import heap, resting
 from momantu_worlds.labelled.shapes import CATEGORIES, FAMILIES, Shape, draw_shape
+from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.sapien.build.meshes import collision_mesh
 from momantu_worlds.scenes.geometry.bodies import Hull, Mesh
 from shapely.geometry import MultiPoint
@@ -75,7 +76,7 @@ def test_things_of_a_heap_stand_beside_each_other_or_on_boxes() -> None:
     touching = 0
     for number in range(15):
         ground = []
-        for laid in heap(seeded("heap", number), (0.3, 0.3), testing=False):
+        for laid in heap(seeded("heap", number), (0.3, 0.3), Stock(testing=False)):
             if laid.shape is None or "_in_" in laid.name:
                 continue
             there = laid.top_from_thing.apply(laid.shape.outline)
@@ -90,6 +91,6 @@ def test_things_of_a_heap_stand_beside_each_other_or_on_boxes() -> None:
 
 
 def test_the_same_seed_makes_the_same_heap() -> None:
-    one, other = (heap(seeded("same"), (0.3, 0.3), testing=True) for _ in range(2))
+    one, other = (heap(seeded("same"), (0.3, 0.3), Stock(testing=True)) for _ in range(2))
     assert [laid.name for laid in one] == [laid.name for laid in other]
     assert [laid.top_from_thing for laid in one] == [laid.top_from_thing for laid in other]

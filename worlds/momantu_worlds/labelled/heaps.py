@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,7 +13,8 @@ from shapely.geometry import MultiPoint, Polygon
 from shapely.prepared import prep
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
-from momantu_worlds.labelled.shapes import CATEGORIES, Draw, Shape, draw_color, draw_shape
+from momantu_worlds.labelled.shapes import Draw, Shape, draw_color
+from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Part, Sphere
 from momantu_worlds.scenes.geometry.parts import block
 
@@ -33,6 +35,25 @@ CLOSE = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
+class Manner:
+    """How a heap is made. upright, touching, tray, clutter, arm: shares, as the constants above.
+
+    things: the fewest, and one more than the most.
+    """
+
+    upright: float = UPRIGHT
+    touching: float = TOUCHING
+    tray: float = TRAY
+    clutter: float = CLUTTER
+    arm: float = ARM
+    things: tuple[int, int] = (3, 10)
+
+
+USUAL = Manner()
+"""Heaps of pictures to train and to test with."""
+
+
+@dataclass(frozen=True, slots=True)
 class Laid:
     """A thing at its place. shape: None: it is of no category.
 
@@ -50,28 +71,28 @@ class _Heap:
     """What lies so far; ground: its outlines on the surface."""
 
     half: tuple[float, float]
+    manner: Manner
     laid: list[Laid]
     ground: list[Polygon]
 
 
-def heap(draw: Draw, half: tuple[float, float], *, testing: bool) -> list[Laid]:
+def heap(draw: Draw, half: tuple[float, float], stock: Stock, manner: Manner = USUAL) -> list[Laid]:
     """Things around the origin of a surface.
 
-    half: half the extent (2,) of the free room around the origin, m. testing: families for testing.
+    half: half the extent (2,) of the free room around the origin, m. stock: where things are from.
     """
-    made = _Heap((min(NEAR, half[0]), min(NEAR, half[1])), [], [])
+    made = _Heap((min(NEAR, half[0]), min(NEAR, half[1])), manner, [], [])
     inside = 0
-    if draw.random() < TRAY:
-        inside = _tray(draw, made, testing)
-    if draw.random() < CLUTTER:
+    if draw.random() < manner.tray:
+        inside = _tray(draw, made, stock)
+    if draw.random() < manner.clutter:
         for _ in range(int(draw.integers(1, 3))):
             _put(draw, made, f"clutter_{len(made.laid)}", None, _clutter(draw))
-    for _ in range(max(1, int(draw.integers(3, 10)) - inside)):
-        category = CATEGORIES[int(draw.integers(len(CATEGORIES)))]
-        shape = draw_shape(category, draw, testing=testing)
+    for _ in range(max(1, int(draw.integers(*manner.things)) - inside)):
+        shape = stock.shape(draw)
         if draw.random() < ON_TOP and _on_box(draw, made, shape):
             continue
-        _put(draw, made, f"{category}_{len(made.laid)}", shape, shape.parts)
+        _put(draw, made, f"{shape.category}_{len(made.laid)}", shape, shape.parts)
     return made.laid
 
 
@@ -81,7 +102,7 @@ def _put(draw: Draw, made: _Heap, name: str, shape: Shape | None, parts: tuple[P
         pose, points = Transform(), _corners(parts)
         flat = MultiPoint(points[:, :2]).convex_hull
     else:
-        pose = resting(draw, shape)
+        pose = resting(draw, shape, made.manner.upright)
         flat = MultiPoint(pose.apply(shape.outline)[:, :2]).convex_hull
     at = _place(draw, made, flat)
     if at is None:
@@ -94,7 +115,7 @@ def _place(draw: Draw, made: _Heap, flat: Polygon) -> tuple[float, float] | None
     """Where an outline (around the origin) finds room; None if it finds none."""
     for _ in range(TRIES):
         x, y = draw.uniform(-1.0, 1.0, 2) * made.half
-        if made.ground and draw.random() < TOUCHING:
+        if made.ground and draw.random() < made.manner.touching:
             beside = made.ground[int(draw.integers(len(made.ground)))]
             x, y = _against(draw, beside, flat)
         low_x, low_y, high_x, high_y = flat.bounds
@@ -124,15 +145,17 @@ def _against(draw: Draw, other: Polygon, flat: Polygon) -> tuple[float, float]:
     return x, y
 
 
-def resting(draw: Draw, shape: Shape) -> Transform:
-    """A pose in which a thing rests on z = 0 above the origin."""
+def resting(draw: Draw, shape: Shape, upright: float = UPRIGHT) -> Transform:
+    """A pose in which a thing rests on z = 0 above the origin. upright: share that stands."""
     turn = Transform(quaternion=quaternion_from_axis_angle((0, 0, 1), draw.uniform(0, 2 * math.pi)))
     kind = draw.random()
-    if shape.profile is None:
+    if shape.lying:
+        lie = _mesh_lies(draw, shape.lying, stands=kind < upright)
+    elif shape.profile is None:
         lie = _box_lies(draw, kind)
-    elif kind < UPRIGHT:
+    elif kind < upright:
         lie = Transform()
-    elif kind < UPRIGHT + UPSIDE_DOWN and shape.category != "bottle":
+    elif kind < upright + UPSIDE_DOWN and shape.category != "bottle":
         lie = Transform(quaternion=(0.0, 1.0, 0.0, 0.0))
     else:
         lie = _on_side(draw, shape)
@@ -147,6 +170,13 @@ def _box_lies(draw: Draw, kind: float) -> Transform:
         return Transform()
     axis = (0.0, 1.0, 0.0) if kind < 0.75 else (1.0, 0.0, 0.0)
     return Transform(quaternion=quaternion_from_axis_angle(axis, math.pi / 2))
+
+
+def _mesh_lies(draw: Draw, lying: Sequence[Array], *, stands: bool) -> Transform:
+    """A mesh as it stands in its file, or on one of its sides."""
+    if stands:
+        return Transform()
+    return Transform.from_rotation(lying[int(draw.integers(len(lying)))])
 
 
 def _on_side(draw: Draw, shape: Shape) -> Transform:
@@ -204,7 +234,7 @@ def _on_box(draw: Draw, made: _Heap, shape: Shape) -> bool:
     return False
 
 
-def _tray(draw: Draw, made: _Heap, testing: bool) -> int:
+def _tray(draw: Draw, made: _Heap, stock: Stock) -> int:
     """An open box with things in it; how many."""
     x, y = draw.uniform(0.12, 0.19), draw.uniform(0.14, 0.24)
     high, wall = draw.uniform(0.03, 0.10), draw.uniform(0.003, 0.01)
@@ -222,13 +252,12 @@ def _tray(draw: Draw, made: _Heap, testing: bool) -> int:
     )
     turn = draw.uniform(-math.pi, math.pi)
     pose = Transform(quaternion=quaternion_from_axis_angle((0, 0, 1), turn))
-    inner = _Heap((x - wall - 0.05, y - wall - 0.05), [], [])
+    inner = _Heap((x - wall - 0.05, y - wall - 0.05), made.manner, [], [])
     if min(inner.half) < 0.02:
         return 0
     for _ in range(int(draw.integers(1, 5))):
-        category = CATEGORIES[int(draw.integers(len(CATEGORIES)))]
-        shape = draw_shape(category, draw, testing=testing)
-        _put(draw, inner, f"{category}_in_{len(inner.laid)}", shape, shape.parts)
+        shape = stock.shape(draw)
+        _put(draw, inner, f"{shape.category}_in_{len(inner.laid)}", shape, shape.parts)
     room = MultiPoint(pose.apply(_corners(parts))[:, :2]).convex_hull
     made.ground.append(room)
     made.laid.append(Laid("tray", None, parts, pose))

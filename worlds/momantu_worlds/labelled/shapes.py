@@ -14,13 +14,14 @@ from typing import TypeAlias
 
 import numpy as np
 
+from momantu_bt.categories import USUAL
 from momantu_bt.geometry import Array, Transform
 from momantu_worlds.labelled.sweeps import rounded_block, tube
 from momantu_worlds.scenes.catalogue.paint import Band, Look, label, painted, seen
 from momantu_worlds.scenes.geometry.bodies import Color, Part
 from momantu_worlds.scenes.geometry.parts import block, shade
 
-CATEGORIES = ("bottle", "bowl", "can", "mug", "box")
+CATEGORIES = tuple(USUAL)
 """All categories, in the order in which they are drawn."""
 
 Draw: TypeAlias = np.random.Generator
@@ -33,7 +34,7 @@ class Shape:
     """One thing. size: extent (3,) along x, y, z, m, without a handle.
 
     outline: points (n, 3) around which its convex hull lies. profile: (k, 2) radius and height of
-    a round one's outside; None of a box.
+    a round one's outside; None of others. lying: turns (3, 3) in which a mesh lies.
     """
 
     category: str
@@ -42,6 +43,7 @@ class Shape:
     parts: tuple[Part, ...]
     outline: Array
     profile: Array | None
+    lying: tuple[Array, ...] = ()
 
 
 def draw_shape(category: str, draw: Draw, *, testing: bool) -> Shape:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,10 @@ from momantu_bt.labelled import Label, Labelled
 from momantu_bt.robot import CameraSensor
 from momantu_bt.world import WorldError, seeded
 from momantu_bt.world_plugins import WORLDS as ENTRIES
-from momantu_worlds.labelled.heaps import ARM, Laid, arm, heap
+from momantu_worlds.labelled.heaps import USUAL, Laid, Manner, arm, heap
+from momantu_worlds.labelled.own import OwnCategory
 from momantu_worlds.labelled.shapes import Draw, draw_color
+from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.sapien.build.bodies import add_lights, look_of
 from momantu_worlds.sapien.config import CameraErrors
 from momantu_worlds.sapien.poses import pose_of
@@ -66,15 +68,24 @@ class _Stand:
 class Studio:
     """Renders labelled pictures in some worlds."""
 
-    def __init__(self, worlds: Sequence[str], *, testing: bool) -> None:
+    def __init__(
+        self,
+        worlds: Sequence[str],
+        *,
+        testing: bool,
+        own: tuple[OwnCategory, ...] = (),
+        manner: Manner = USUAL,
+    ) -> None:
         """worlds: names or files; none: WORLDS. testing: with the families kept for testing.
+
+        own: categories beside the usual ones. manner: how heaps are made.
 
         Raises:
             PluginError: there is no such world.
             WorldError: a world is not described by a file.
         """
         self._worlds = [_file(world) for world in worlds or WORLDS]
-        self._testing = testing
+        self._stock, self._manner = Stock(testing, own), manner
         self._set: _Set | None = None
 
     def picture(self, seed: int) -> Labelled:
@@ -91,10 +102,10 @@ class Studio:
                 self._set.close()
             self._set = _Set(world, layout)
         for attempt in range(ATTEMPTS):
-            draw = seeded(seed, "picture", attempt, "test" if self._testing else "train")
-            made = self._set.take(draw, seed, testing=self._testing)
+            draw = seeded(seed, "picture", attempt, "test" if self._stock.testing else "train")
+            made = self._set.take(draw, seed, self._stock, self._manner)
             if made is not None:
-                return made
+                return replace(made, categories=self._stock.categories)
         raise WorldError(f"no view of seed {seed} in {world} shows a thing; leave this seed out")
 
 
@@ -129,7 +140,7 @@ class _Set:
         for entity in list(self.scene.entities):
             self.scene.remove_entity(entity)
 
-    def take(self, draw: Draw, seed: int, *, testing: bool) -> Labelled | None:
+    def take(self, draw: Draw, seed: int, stock: Stock, manner: Manner) -> Labelled | None:
         """A picture of a new heap; None if none of it is seen."""
         table = self.tables[int(draw.integers(len(self.tables)))]
         half = np.array(table.size) / 2
@@ -137,11 +148,10 @@ class _Set:
             half = half / math.sqrt(2)
         spot = draw.uniform(-1.0, 1.0, 2) * np.maximum(half - 0.22, 0.0)
         map_from_top = table.map_from_top @ Transform((*spot, 0.0))
-        laid = heap(
-            draw, (float(half[0] - abs(spot[0])), float(half[1] - abs(spot[1]))), testing=testing
-        )
+        room = (float(half[0] - abs(spot[0])), float(half[1] - abs(spot[1])))
+        laid = heap(draw, room, stock, manner)
         top_from_camera = _viewpoint(draw, table)
-        if draw.random() < ARM:
+        if draw.random() < manner.arm:
             laid = [*laid, arm(draw, top_from_camera.position)]
         self._relight(draw)
         entities = [self._add(each.parts, map_from_top @ each.top_from_thing) for each in laid]

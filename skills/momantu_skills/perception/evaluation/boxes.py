@@ -14,20 +14,22 @@ from itertools import permutations, product
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.geometry import Array, Transform
-
-ROUND = frozenset({"bottle", "bowl", "can"})
-"""Categories that look the same when turned about z."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solid:
-    """A thing. pose: `camera_from_object`; size: (3,) m; turns: it may be turned about its z."""
+    """A thing. pose: `camera_from_object`; size: (3,) m; turns: it may be turned about its z.
+
+    symmetry: None: that of the usual category.
+    """
 
     category: str
     pose: Transform
     size: tuple[float, float, float]
     turns: bool = False
+    symmetry: Symmetry | None = None
 
 
 def overlap(one: Solid, true: Solid) -> float:
@@ -50,12 +52,13 @@ def overlap(one: Solid, true: Solid) -> float:
 def angle(one: Solid, true: Solid) -> float:
     """The angle between two things' turns, degrees, the least of those that look alike."""
     relative = one.pose.rotation.T @ true.pose.rotation
-    if true.category == "box":
+    symmetry = true.symmetry or USUAL.get(true.category, Symmetry.NONE)
+    if symmetry is Symmetry.BOX:
         best = max(float(np.trace(relative @ turn)) for turn in _CUBE)
         return _degrees((best - 1.0) / 2.0)
     if true.turns:
         cosine = float(relative[2, 2])
-        return _degrees(abs(cosine) if true.category == "can" else cosine)
+        return _degrees(abs(cosine) if symmetry is Symmetry.ENDS else cosine)
     return _degrees((float(np.trace(relative)) - 1.0) / 2.0)
 
 

@@ -18,7 +18,6 @@ with lazily():
     from momantu_bt import detector as detectors
     from momantu_bt import labelled
     from momantu_skills.perception.evaluation import measure, precision
-    from momantu_skills.perception.objects import matching
 
 EVERY = 50
 """Pictures between two lines of progress."""
@@ -60,13 +59,16 @@ def evaluate(
         source = renderer.picture
     else:
         source = lambda seed: labelled.read(pictures, seed)  # noqa: E731
+    categories: dict[str, None] = {}
     seen, start = [], time.monotonic()
     for count, seed in enumerate(wanted, 1):
-        seen.append(measure.measured(source(seed), make()))
+        made = source(seed)
+        categories |= dict.fromkeys(made.categories)
+        seen.append(measure.measured(made, make()))
         if count % EVERY == 0:
             left = (time.monotonic() - start) / count * (len(wanted) - count)
             typer.echo(f"{count} of {len(wanted)} pictures, {left / 60:.0f} min left", err=True)
-    found = precision.average_precisions(seen, matching.KNOWN)
+    found = precision.average_precisions(seen, tuple(categories))
     things = sum(len(picture.true) for picture in seen)
     typer.echo(f"{detector}: {things} things in {len(wanted)} pictures")
     typer.echo(table(found))

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from momantu_bt.detector import ObjectDetector, View
+from momantu_bt.detector import DetectorError, ObjectDetector, View
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, ObjectClass
@@ -62,10 +62,15 @@ class BothDetectors:
         """See `ObjectDetector.detect`.
 
         Raises:
-            WeightsError: the learned detector's weights cannot be used.
+            DetectorError: the learned detector's weights cannot be used.
         """
         measured = self._measuring.detect(views, low, high, asked)
-        learned = self._learned.detect(views, low, high, asked)
+        try:
+            learned = self._learned.detect(views, low, high, asked)
+        except DetectorError as error:
+            if error.code != "CATEGORY_UNKNOWN":
+                raise
+            return measured  # which takes a thing of any shape for one of an unknown category
         if measured is None and learned is None:
             return None
         found = _merged(list(measured or ()), list(learned or ()))

@@ -108,6 +108,13 @@ def channels(crop: Crop) -> NDArray[np.float32]:
     return np.stack(layers).astype(np.float32)
 
 
+def mirror(layers: NDArray[np.float32]) -> NDArray[np.float32]:
+    """What the network would see in a mirror, from `channels` (CHANNELS, h, w)."""
+    layers = layers[:, :, ::-1].copy()
+    layers[NORMAL.start] *= -1.0
+    return layers
+
+
 def _points(
     image: CameraImage,
     level_from_camera: Transform,

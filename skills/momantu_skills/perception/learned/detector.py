@@ -4,25 +4,47 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
-from momantu_bt.detector import View
+from momantu_bt.categories import USUAL
+from momantu_bt.detector import DetectorError, View
 from momantu_bt.frames import ODOM
 from momantu_bt.geometry import Pose
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import DetectedObject, ObjectClass
-from momantu_skills.perception.objects.matching import KNOWN, MatchConfig, score
+from momantu_skills.perception.learned import header
+from momantu_skills.perception.objects.matching import MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape
 
 with lazily():
-    from momantu_skills.perception.learned import crops, fusing, seeing, solids, weights
+    from momantu_skills.perception.learned import confidence, crops, fusing, seeing, solids, weights
     from momantu_skills.perception.learned import standing as surfaces
 
 WEIGHTS = "MOMANTU_BT_LEARNED_WEIGHTS"
 """Environment variable: a weights file instead of the bundled one."""
 TOLERANCES = MatchConfig(relative=0.15, absolute=0.010)
 """Its sizes are less exact than those of a fitted shape."""
+UNLIKELY = 0.6
+"""Factor on the score of a thing that is hardly right by itself; of a likely one it is 1."""
+
+
+class _Categories:
+    """The categories that a detector's weights tell apart, or the usual ones if nobody can say."""
+
+    def __get__(self, detector: LearnedDetector | None, kind: type) -> tuple[str, ...]:
+        path = weights_file() if detector is None else detector.path
+        try:
+            return tuple(USUAL if path is None else header.categories(path))
+        except header.WeightsError:
+            return tuple(USUAL)
+
+
+def weights_file() -> Path | None:
+    """The weights file that the environment names, if it names one."""
+    told = os.environ.get(WEIGHTS)
+    return Path(told) if told else None
 
 
 class LearnedDetector:
@@ -31,15 +53,14 @@ class LearnedDetector:
     torch and the weights are loaded with the first picture.
     """
 
-    categories: ClassVar[tuple[str, ...]] = KNOWN
-    """The categories that it tells apart."""
+    categories = _Categories()
+    """The categories that it tells apart: those of its weights."""
     budget: ClassVar[float] = 0.15
     """Time allowed for one view, s."""
 
     def __init__(self, path: Path | None = None) -> None:
         """path: of the weights; None: those of the environment variable, or the bundled ones."""
-        told = os.environ.get(WEIGHTS)
-        self._path = path or (Path(told) if told else None)
+        self.path = path or weights_file()
         self._seeing: seeing.Seeing | None = None
         self._seen: dict[int, tuple[View, fusing.Look | None]] = {}
 
@@ -54,8 +75,9 @@ class LearnedDetector:
         """See `ObjectDetector.detect`.
 
         Raises:
-            WeightsError: the weights cannot be used.
+            DetectorError: the weights cannot be used, or do not know the category.
         """
+        self._check(asked.category)
         looks = [look for view in views if (look := self._look(view, low, high)) is not None]
         if not looks:
             return None
@@ -64,6 +86,18 @@ class LearnedDetector:
         found = [self._object(thing, height, stamp, asked) for thing in fusing.fused(looks)]
         found.sort(key=lambda thing: -thing.score)
         return tuple(found)
+
+    def _check(self, category: str) -> None:
+        """Raise an error if the weights cannot be used, or do not know a category."""
+        path = self.path or weights.BUNDLED
+        known = header.categories(path)
+        if category not in known:
+            raise DetectorError(
+                "CATEGORY_UNKNOWN",
+                f"the weights {path.name} know no {category!r}; they know {', '.join(known)}: ask "
+                "for one of these, use the detector `geometric`, or train weights with it and name "
+                f"them in {WEIGHTS}",
+            )
 
     def _look(self, view: View, low: float, high: float) -> fusing.Look | None:
         """What one view shows; each view is looked at once."""
@@ -84,19 +118,21 @@ class LearnedDetector:
         if crop is None:
             return fusing.Look(surface.height, surface.area, image.stamp, ())
         if self._seeing is None:
-            self._seeing = seeing.Seeing(self._path or weights.BUNDLED)
+            self._seeing = seeing.Seeing(self.path or weights.BUNDLED)
         solids = tuple(thing.moved(crop.odom_from_level) for thing in self._seeing.solids(crop))
         return fusing.Look(surface.height, surface.area, image.stamp, solids)
 
-    @staticmethod
     def _object(
-        thing: solids.Solid, height: float, stamp: float, asked: ObjectClass
+        self, thing: solids.Solid, height: float, stamp: float, asked: ObjectClass
     ) -> DetectedObject:
-        kind = "box" if thing.category == "box" else "cylinder"
+        kind = "cylinder" if thing.has_axis else "box"
         pose = thing.frame_from_object
         x, y, _ = pose.position.tolist()
         shape = Shape(kind, thing.category, (x, y), pose.yaw, thing.size, 0.0, 0.0, 0.0)
-        worth = score(shape, asked, TOLERANCES) * (0.5 + 0.5 * thing.sure)
+        known = replace(TOLERANCES, categories=self.categories)
+        worth = score(shape, asked, known) * (
+            UNLIKELY + (1.0 - UNLIKELY) * confidence.chance(thing)
+        )
         return DetectedObject(
             category=asked.category if worth >= TOLERANCES.accepted else thing.category,
             pose=Pose(pose, ODOM, stamp),

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.labelled import Labelled, read
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.regions import depth_inside
-from momantu_skills.perception.learned.crops import Crop, channels, cut
+from momantu_skills.perception.learned.crops import Crop, channels, cut, mirror
 from momantu_skills.perception.learned.standing import standing
 from momantu_skills.perception.learned.targets import Targets, Truth, targets
-from momantu_skills.perception.objects.matching import KNOWN
 
-FOLDER = "crops-1"
+FOLDER = "crops-2"
 """Where the crops are kept; its number changes with their kind."""
 SPAN = 0.03
 """How far from its true height a surface is looked for, m."""
@@ -32,10 +32,10 @@ class Example:
     def __init__(self, crop: Crop, numbers: NDArray[np.uint8], truths: list[Truth]) -> None:
         self.crop, self.numbers, self.truths = crop, numbers, truths
 
-    def arrays(self) -> tuple[NDArray[np.float32], Targets]:
-        """What the network sees and what it shall say."""
-        crop = self.crop
-        made = targets(crop.points[::2, ::2], self.numbers[::2, ::2], crop.eye, self.truths)
+    def arrays(self, classes: Sequence[str]) -> tuple[NDArray[np.float32], Targets]:
+        """What the network sees and what it shall say. classes: their names."""
+        crop, numbers = self.crop, self.numbers[::2, ::2]
+        made = targets(crop.points[::2, ::2], numbers, crop.eye, self.truths, classes)
         return channels(crop), made
 
 
@@ -56,12 +56,13 @@ def example(made: Labelled) -> Example | None:
     truths = [
         Truth(
             thing.number,
-            KNOWN.index(thing.category),
+            thing.category,
+            made.categories[thing.category],
             level_from_camera @ thing.camera_from_object,
             np.array(thing.size),
         )
         for thing in made.things
-        if thing.category in KNOWN
+        if thing.category in made.categories
     ]
     numbers = np.ascontiguousarray(made.numbers[crop.rows][:, crop.columns])
     return Example(crop, numbers, truths)
@@ -89,7 +90,6 @@ def _store(path: Path, found: Example | None) -> None:
     poses = [
         [
             t.number,
-            t.category,
             *t.level_from_object.position,
             *t.level_from_object.quaternion,
             *t.size,
@@ -103,7 +103,9 @@ def _store(path: Path, found: Example | None) -> None:
         color=crop.color,
         eye=np.array(crop.eye),
         numbers=found.numbers,
-        truths=np.array(poses, dtype=np.float64).reshape(-1, 12),
+        truths=np.array(poses, dtype=np.float64).reshape(-1, 11),
+        categories=np.array([t.category for t in found.truths], dtype=np.str_),
+        symmetries=np.array([str(t.symmetry) for t in found.truths], dtype=np.str_),
     )
 
 
@@ -114,22 +116,24 @@ def _load(path: Path) -> Example | None:
         points, color = data["points"], data["color"]
         rows, columns = np.arange(points.shape[0]), np.arange(points.shape[1])
         crop = Crop(points, color, Transform(), float(data["eye"]), rows, columns)
-        return Example(crop, data["numbers"], [_truth(row) for row in data["truths"]])
+        names, kinds = data["categories"].tolist(), data["symmetries"].tolist()
+        told = zip(data["truths"], names, kinds, strict=True)
+        return Example(crop, data["numbers"], [_truth(*each) for each in told])
 
 
-def _truth(row: Array) -> Truth:
-    pose = Transform(row[2:5], row[5:9])
-    return Truth(int(row[0]), int(row[1]), pose, row[9:12])
+def _truth(row: Array, category: str, symmetry: str) -> Truth:
+    pose = Transform(row[1:4], row[4:8])
+    return Truth(int(row[0]), category, Symmetry(symmetry), pose, row[8:11])
 
 
 def mirrored(seen: NDArray[np.float32], made: Targets) -> tuple[NDArray[np.float32], Targets]:
     """The example as in a mirror; things of all categories have mirror images of their kind."""
-    seen = seen[:, :, ::-1].copy()
-    seen[1] *= -1.0
+    seen = mirror(seen)
     coordinates, offsets = made.coordinates[..., ::-1].copy(), made.offsets[..., ::-1].copy()
     coordinates[:, 1] *= -1.0
     offsets[0] *= -1.0
-    return seen, Targets(made.classes[:, ::-1], made.things[:, ::-1], coordinates, offsets)
+    classes, things, weights = made.classes[:, ::-1], made.things[:, ::-1], made.weights[:, ::-1]
+    return seen, Targets(classes, things, weights, coordinates, offsets)
 
 
 def recolored(seen: NDArray[np.float32], draw: np.random.Generator) -> NDArray[np.float32]:
@@ -139,24 +143,11 @@ def recolored(seen: NDArray[np.float32], draw: np.random.Generator) -> NDArray[n
     return seen
 
 
-def batch(made: Sequence[tuple[NDArray[np.float32], Targets]]) -> list[NDArray[np.generic]]:
-    """Examples as arrays of one size, with nothing around the smaller ones.
+def alone(seen: NDArray[np.float32], made: Targets) -> list[NDArray[np.generic]]:
+    """An example as arrays of a batch of one.
 
-    Returns: what is seen (n, c, h, w), classes and things (n, h/2, w/2), coordinates
-    (n, VALID, 3, h/2, w/2), offsets (n, 3, h/2, w/2). Cells of the border have the class -1.
+    Returns: what is seen (1, c, h, w), classes and things (1, h/2, w/2), weights (1, h/2, w/2),
+    coordinates (1, VALID, 3, h/2, w/2), offsets (1, 3, h/2, w/2).
     """
-    high = max(seen.shape[1] for seen, _ in made)
-    wide = max(seen.shape[2] for seen, _ in made)
-    count, cells = len(made), (high // 2, wide // 2)
-    first = made[0][1].coordinates.shape[:2]
-    seen = np.zeros((count, made[0][0].shape[0], high, wide), dtype=np.float32)
-    classes = np.full((count, *cells), -1, dtype=np.int64)
-    things = np.full((count, *cells), -1, dtype=np.int64)
-    coordinates = np.zeros((count, *first, *cells), dtype=np.float32)
-    offsets = np.zeros((count, 3, *cells), dtype=np.float32)
-    for n, (one, target) in enumerate(made):
-        h, w = target.classes.shape
-        seen[n, :, : 2 * h, : 2 * w] = one
-        classes[n, :h, :w], things[n, :h, :w] = target.classes, target.things
-        coordinates[n, :, :, :h, :w], offsets[n, :, :h, :w] = target.coordinates, target.offsets
-    return [seen, classes, things, coordinates, offsets]
+    parts = (seen, made.classes, made.things, made.weights, made.coordinates, made.offsets)
+    return [np.ascontiguousarray(part)[None] for part in parts]

@@ -6,16 +6,17 @@ one thread of a processor.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import torch
 from torch import Tensor, nn
 
+from momantu_bt.categories import USUAL, Symmetry
 from momantu_skills.perception.learned.crops import CHANNELS
-from momantu_skills.perception.objects.matching import KNOWN
 
-CLASSES = ("nothing", *KNOWN, "handle")
-"""What a cell shows; a handle is part of a mug."""
+NOTHING = 0
+"""Class of a cell that shows nothing. Those of the categories follow, then that of a handle."""
 COORDINATES, OFFSETS = 3, 3
 """Numbers of a cell: where it is on its thing, and where the middle of its thing is."""
 WIDTHS = (16, 32, 64, 96)
@@ -42,11 +43,18 @@ class Block(nn.Module):
         return torch.relu(inner + self.shortcut(x))
 
 
-class Network(nn.Module):
-    """See the module."""
+def classes_of(categories: Mapping[str, Symmetry]) -> tuple[str, ...]:
+    """What a cell may show, by its class; a handle is part of a mug."""
+    return ("nothing", *categories, "handle")
 
-    def __init__(self) -> None:
+
+class Network(nn.Module):
+    """See the module. categories: those that it tells apart."""
+
+    def __init__(self, categories: Mapping[str, Symmetry] = USUAL) -> None:
         super().__init__()
+        self.categories = dict(categories)
+        self.classes = classes_of(categories)
         self.stem = nn.Conv2d(CHANNELS, WIDTHS[0], 5, stride=2, padding=2)
         self.down = nn.ModuleList(
             Block(before, after) for before, after in pairwise((WIDTHS[0], *WIDTHS))
@@ -54,7 +62,7 @@ class Network(nn.Module):
         self.deep = Block(WIDTHS[-1], WIDTHS[-1])
         self.narrow = nn.ModuleList(nn.Conv2d(coarse, fine, 1) for fine, coarse in pairwise(WIDTHS))
         self.up = nn.ModuleList(Block(width, width) for width in WIDTHS[:-1])
-        self.head = nn.Conv2d(WIDTHS[0], len(CLASSES) + COORDINATES + OFFSETS, 1)
+        self.head = nn.Conv2d(WIDTHS[0], len(self.classes) + COORDINATES + OFFSETS, 1)
 
     def forward(self, x: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Scores (n, classes, h/2, w/2), coordinates (n, 3, ...) and offsets (n, 3, ...).
@@ -73,5 +81,20 @@ class Network(nn.Module):
             finer = nn.functional.interpolate(self.narrow[number](x), scale_factor=2.0)
             x = self.up[number](finer + levels[number])
         out = self.head(x)
-        scores, coordinates, offsets = out.split([len(CLASSES), COORDINATES, OFFSETS], dim=1)
+        scores, coordinates, offsets = out.split([len(self.classes), COORDINATES, OFFSETS], dim=1)
         return scores, coordinates, offsets
+
+    def knowing(self, categories: Mapping[str, Symmetry]) -> Network:
+        """A network for other categories, with all that this one has learned."""
+        other, own = Network(categories), COORDINATES + OFFSETS
+        learned, fresh = self.state_dict(), other.state_dict()
+        for name in learned:
+            if not name.startswith("head"):
+                fresh[name] = learned[name]
+                continue
+            fresh[name][-own:] = learned[name][-own:]
+            for new, shown in enumerate(other.classes):
+                if shown in self.classes:
+                    fresh[name][new] = learned[name][self.classes.index(shown)]
+        other.load_state_dict(fresh)
+        return other

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
 from momantu_skills.perception.geometry.rectangles import fitted_to, smallest_rectangle
 from momantu_skills.perception.geometry.revolution import fit_revolution
@@ -29,7 +30,7 @@ INNER = 0.6
 MISFIT = 0.004
 """Median distance of points to a fitted side up to which it explains them, m."""
 WIDEST = 90.0
-"""Percentile of a bottle's or bowl's radii that is its widest part's."""
+"""Percentile of the radii that is the widest part's, of what is not as wide everywhere."""
 ENDS = 2.0
 """Per cent of the points that noise puts beyond each end."""
 BELOW_TOP = 0.010
@@ -77,7 +78,7 @@ class _Sides(NamedTuple):
 
 def refined(thing: Solid, seen: Seen) -> Solid:
     """A thing as its points show it; z = 0 is the surface. What they do not show stays."""
-    if thing.category != "box":
+    if thing.has_axis:
         thing = _aligned(thing, seen)
     object_from_level = thing.frame_from_object.inverse()
     own = object_from_level.apply(seen.points)
@@ -86,12 +87,13 @@ def refined(thing: Solid, seen: Seen) -> Solid:
     if len(body) < LEAST:
         return thing
     low, high = _ends(thing, body)
-    if thing.category == "box":
+    sides = None
+    if thing.symmetry is Symmetry.BOX:
         sides = _rectangle(thing, body, high)
-    else:
+    elif thing.has_axis:
         sides = _round(thing, body, high, object_from_level.apply((0.0, 0.0, seen.eye)))
     sides = sides or _Sides(0.0, np.zeros(2), thing.size[:2])
-    if thing.category == "mug":
+    if thing.symmetry is Symmetry.HANDLE:
         around = object_from_level.apply(seen.around)
         bearing = _bearing(own, seen.of_handle, around, sides, (low, high))
         thing = replace(thing, handle=bearing is not None)
@@ -155,7 +157,7 @@ def _round(thing: Solid, body: Array, high: float, eye: Array) -> _Sides | None:
     if found is None or found.misfit > MISFIT:
         return None
     wide = found.radius
-    if thing.category in ("bottle", "bowl"):
+    if thing.symmetry is Symmetry.ROUND:
         wide = float(np.percentile(found.radii[~np.isnan(found.radii)], WIDEST))
     if thing.category == "bowl":
         rim = body[body[:, 2] > high - RIM, :2] - found.centre

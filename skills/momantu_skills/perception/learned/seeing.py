@@ -8,16 +8,16 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array
 from momantu_bt.world import seeded
 from momantu_skills.perception.learned import weights
-from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels
+from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels, mirror
 from momantu_skills.perception.learned.instances import LEAST, instances
-from momantu_skills.perception.learned.network import CLASSES
+from momantu_skills.perception.learned.network import NOTHING
 from momantu_skills.perception.learned.refining import Seen, refined
 from momantu_skills.perception.learned.solids import Solid, solid
 from momantu_skills.perception.learned.targets import OFFSET_UNIT
-from momantu_skills.perception.objects.matching import KNOWN
 
 SHOWN = 0.5
 """Least probability that a cell shows a thing."""
@@ -29,6 +29,11 @@ class Seeing:
     def __init__(self, path: Path) -> None:
         """path: of the weights; raises WeightsError if they are none."""
         self._network = weights.load(path)
+        self._handled = [
+            number
+            for number, symmetry in enumerate(self._network.categories.values())
+            if symmetry is Symmetry.HANDLE
+        ]
 
     def solids(self, crop: Crop) -> list[Solid]:
         """The things in a crop, in its frame `level`."""
@@ -36,48 +41,72 @@ class Seeing:
         normals = layers[NORMAL, ::2, ::2].reshape(3, -1).T.astype(np.float64)
         chances, coordinates, offsets = self._said(layers)
         points = crop.points[::2, ::2].reshape(-1, 3).astype(np.float64)
-        shown = (chances[:, 0] < 1.0 - SHOWN) & np.isfinite(points[:, 2])
+        shown = (chances[:, NOTHING] < 1.0 - SHOWN) & np.isfinite(points[:, 2])
         if int(shown.sum()) < LEAST:
             return []
         every = points
-        points, coordinates, offsets = points[shown], coordinates[shown], offsets[shown]
+        points, coordinates, offsets = points[shown], coordinates[:, shown], offsets[shown]
         chances, normals = chances[shown], normals[shown]
         owner = instances(points + OFFSET_UNIT * offsets)
         free = np.isfinite(every[:, 2]) & ~shown & (every[:, 2] > LOW)
         around = np.concatenate([every[free], points[owner < 0]])
-        of_category = np.stack([chances[:, CLASSES.index(name)] for name in KNOWN], axis=1)
-        handle = chances[:, CLASSES.index("handle")]
-        of_category[:, KNOWN.index("mug")] += handle
-        of_handle = handle > chances[:, CLASSES.index("mug")]
+        of_category, of_handle = self._of_category(chances)
         found = []
         for number in range(int(owner.max()) + 1):
             mine = owner == number
             random = seeded("similarity", number, int(mine.sum()))
             thing = solid(
-                points[mine], coordinates[mine], of_category[mine], of_handle[mine], random
+                points[mine],
+                coordinates[:, mine],
+                of_category[mine],
+                of_handle[mine],
+                random,
+                self._network.categories,
             )
             if thing is not None:
                 seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
                 found.append(refined(thing, seen))
         return found
 
+    def _of_category(self, chances: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Chances (n, categories), and which of the cells (n,) show a handle."""
+        of_category, handle = chances[:, NOTHING + 1 : -1].copy(), chances[:, -1]
+        of_handle = np.zeros(len(chances), dtype=np.bool_)
+        for number in self._handled:
+            of_handle |= handle > of_category[:, number]
+            of_category[:, number] += handle
+        return of_category, of_handle
+
     def _said(self, layers: NDArray[np.float32]) -> tuple[Array, Array, Array]:
-        """Chances (n, classes), coordinates (n, 3), offsets (n, 3) of all cells.
+        """Chances (n, classes), coordinates (2, n, 3), offsets (n, 3) of all cells.
+
+        The network sees the crop and its mirror image, and both answers count.
 
         layers: (CHANNELS, h, w) of a crop.
         """
         before = torch.get_num_threads()
         torch.set_num_threads(1)
         try:
-            with torch.inference_mode():
-                seen = torch.from_numpy(layers)[None]
-                seen = seen.contiguous(memory_format=torch.channels_last)
-                scores, coordinates, offsets = self._network(seen)
-                parts = (scores.softmax(dim=1), coordinates, offsets)
-                chances, places, votes = (
-                    part[0].permute(1, 2, 0).reshape(-1, part.shape[1]).double().numpy()
-                    for part in parts
-                )
+            straight = self._answers(layers)
+            turned = self._answers(mirror(layers))
         finally:
             torch.set_num_threads(before)
-        return chances, places, votes
+        turned = [part[:, :, ::-1] for part in turned]
+        turned[1][1] *= -1.0
+        turned[2][0] *= -1.0
+        chances, places, votes = (
+            np.stack(both).reshape(2, len(both[0]), -1).transpose(0, 2, 1).astype(np.float64)
+            for both in zip(straight, turned, strict=True)
+        )
+        return chances.mean(axis=0), places, votes.mean(axis=0)
+
+    def _answers(self, layers: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+        """Chances, coordinates and offsets, each (k, h/2, w/2)."""
+        with torch.inference_mode():
+            seen = torch.from_numpy(np.ascontiguousarray(layers))[None]
+            seen = seen.contiguous(memory_format=torch.channels_last)
+            scores, coordinates, offsets = self._network(seen)
+            return [
+                part[0].contiguous().numpy()
+                for part in (scores.softmax(dim=1), coordinates, offsets)
+            ]

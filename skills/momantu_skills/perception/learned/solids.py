@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.geometry import Array, Transform
 from momantu_skills.perception.learned.similarity import fit
-from momantu_skills.perception.objects.matching import KNOWN
 
 TOLERANCE = 0.012
 """Distance between a cell and where the fit has it up to which they agree, m."""
@@ -20,8 +21,6 @@ EXTREME = 96.0
 """Percentile of the cells' coordinates at a thing's end."""
 STRAIGHT = math.radians(12.0)
 """Tilt up to which an axis is taken for upright, or for level: things rest on level surfaces."""
-LEVEL = ("can",)
-"""Round things whose axis is level when they lie."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +28,7 @@ class Solid:
     """A thing. frame_from_object: z is its axis, the origin the middle of its box.
 
     size: (3,) m, without a handle. cells: their number. sure: mean probability of its category.
+    agreeing: share of the coordinates that its pose and size explain. symmetry: of its category.
     handle: whether a mug's is seen, towards +x.
     """
 
@@ -38,6 +38,18 @@ class Solid:
     cells: int
     sure: float
     handle: bool
+    agreeing: float = 1.0
+    told: Symmetry | None = None
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """From which sides it looks the same; that of the usual category unless `told`."""
+        return self.told or USUAL.get(self.category, Symmetry.NONE)
+
+    @property
+    def has_axis(self) -> bool:
+        """Whether it is round about z, but for a handle."""
+        return self.symmetry not in (Symmetry.BOX, Symmetry.NONE)
 
     def moved(self, target_from_frame: Transform) -> Solid:
         """The same in another frame that is level too."""
@@ -50,35 +62,42 @@ def solid(
     chances: Array,
     of_handle: NDArray[np.bool_],
     random: np.random.Generator,
+    categories: Mapping[str, Symmetry] = USUAL,
 ) -> Solid | None:
     """The thing of some cells; None if no pose explains them.
 
-    points: (n, 3) in a level frame, m. coordinates: (n, 3) normalized. chances: (n, 5) of each
-    category of KNOWN. of_handle: (n,) which show a handle.
+    points: (n, 3) in a level frame, m. coordinates: (k, n, 3) normalized, k answers. chances:
+    (n, len(categories)), of each. of_handle: (n,) which show a handle.
     """
     mean = chances.mean(axis=0)
-    category = KNOWN[int(mean.argmax())]
+    category = list(categories)[int(mean.argmax())]
+    symmetry = categories[category]
+    count, said = len(points), len(coordinates)
+    coordinates = coordinates.reshape(-1, 3)
+    points, of_handle = np.tile(points, (said, 1)), np.tile(of_handle, said)
     found = fit(coordinates, points, TOLERANCE, DIAGONALS, random)
     if found is None:
         return None
     body = coordinates[found.fitting & ~of_handle]
     if len(body) < 6:
         return None
-    share = _extent(body, category)
+    share = _extent(body, symmetry)
     size = found.scale * share
-    turn = _straightened(found.rotation, category)
+    turn = _straightened(found.rotation, symmetry)
     # the middle of all that agrees stays where it is
     middle = coordinates[found.fitting].mean(axis=0) * found.scale
     shift = points[found.fitting].mean(axis=0) - turn @ middle
     x, y, z = size.tolist()
-    handle = category == "mug" and int(of_handle.sum()) >= 4
+    handle = symmetry is Symmetry.HANDLE and int(of_handle.sum()) >= 4 * said
     pose = Transform.from_rotation(turn, shift)
-    return Solid(category, pose, (x, y, z), len(points), float(mean.max()), handle)
+    agreeing = float(found.fitting.mean())
+    sure = float(mean.max())
+    return Solid(category, pose, (x, y, z), count, sure, handle, agreeing, symmetry)
 
 
-def _extent(body: Array, category: str) -> Array:
+def _extent(body: Array, symmetry: Symmetry) -> Array:
     """Extent (3,) of a thing over the diagonal of its box, from coordinates (n, 3) on it."""
-    if category == "box":
+    if symmetry in (Symmetry.BOX, Symmetry.NONE):
         half = np.percentile(np.abs(body), EXTREME, axis=0)
     else:
         wide = float(np.percentile(np.hypot(body[:, 0], body[:, 1]), EXTREME))
@@ -86,15 +105,18 @@ def _extent(body: Array, category: str) -> Array:
     return np.asarray(half / max(float(np.linalg.norm(half)), 1e-9))
 
 
-def _straightened(rotation: Array, category: str) -> Array:
-    """The rotation with its most upright axis made upright, or a lying can's axis made level."""
-    axes = (0, 1, 2) if category == "box" else (2,)
+def _straightened(rotation: Array, symmetry: Symmetry) -> Array:
+    """The rotation with its most upright axis made upright, or a lying can's axis made level.
+
+    A thing that no symmetry keeps from lying otherwise stays as it is unless z is upright.
+    """
+    axes = (0, 1, 2) if symmetry is Symmetry.BOX else (2,)
     best = max(axes, key=lambda axis: abs(rotation[2, axis]))
     axis = rotation[:, best]
     tilt = math.acos(min(1.0, abs(float(axis[2]))))
     if tilt < STRAIGHT:
         return turned(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
-    if category in LEVEL and tilt > math.pi / 2 - STRAIGHT:
+    if symmetry is Symmetry.ENDS and tilt > math.pi / 2 - STRAIGHT:
         flat = np.array([axis[0], axis[1], 0.0])
         return turned(axis, flat / np.linalg.norm(flat)) @ rotation
     return rotation

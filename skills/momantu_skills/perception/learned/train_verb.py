@@ -29,6 +29,9 @@ def train(
     start: Annotated[
         Path | None, typer.Option(help="Weights to start from instead of random ones.")
     ] = None,
+    stop: Annotated[
+        int | None, typer.Option(min=1, help="End after so many batches, before the epochs do.")
+    ] = None,
     device: Annotated[str, typer.Option(help="What trains: cpu, or cuda for a GPU.")] = "cpu",
 ) -> ExitCode:
     """Train the network of the detector `learned` on labelled pictures.
@@ -50,19 +53,22 @@ def train(
     torch.set_num_threads(1)
     plan = trainings.Plan(epochs, batch, rate, seed)
     training = trainings.begin(pictures, plan, device, start)
+    training.stop = stop
     state = out.with_name(f"{out.name}.state")
     if state.exists():
         trainings.resume(training, state)
         typer.echo(f"going on at batch {training.step} of {training.steps}", err=True)
     trainings.go_on(training, state, lambda line: typer.echo(line, err=True))
-    told = f"--epochs {epochs} --batch {batch} --rate {rate} --seed {seed}"
+    early = "" if stop is None else f" --stop {stop}"
+    origin = "" if start is None else f" --start {start.name}"
+    told = f"{origin} --epochs {epochs} --batch {batch} --rate {rate} --seed {seed}{early}"
     card = {
-        "command": f"momantu-bt perception train {pictures.name} -o {out.name} {told}",
+        "command": f"momantu-bt perception train {pictures.name} -o {out.name}{told}",
         "pictures": len(training.seeds),
         "seeds": [training.seeds[0], training.seeds[-1]],
         **asdict(plan),
         "started_from": "random weights" if start is None else start.name,
     }
     weights.save(out, training.network, card)
-    typer.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB after {training.steps} batches")
+    typer.echo(f"{out}: {out.stat().st_size / 1e6:.1f} MB after {training.step} batches")
     return ExitCode.SUCCESS

@@ -15,15 +15,14 @@ import torch
 from numpy.typing import NDArray
 
 from momantu_bt.errors import MomantuError
-from momantu_bt.labelled import seeds_in
+from momantu_bt.geometry import Array
+from momantu_bt.labelled import categories_in, seeds_in
 from momantu_bt.world import seeded
 from momantu_skills.perception.learned import examples, weights
 from momantu_skills.perception.learned.losses import COORDINATE_WEIGHT, OFFSET_WEIGHT, loss
 from momantu_skills.perception.learned.network import Network
 from momantu_skills.perception.learned.targets import Targets
 
-POOL = 12
-"""Batches among which examples are sorted by size, so that few cells of a batch are empty."""
 WARM = 0.05
 """Share of the steps in which the learning rate rises."""
 CLIP = 1.0
@@ -52,7 +51,10 @@ class Plan:
 
 @dataclass(slots=True)
 class Training:
-    """A training as far as it is. step: batches so far, of `steps`. device: "cpu" or "cuda"."""
+    """A training as far as it is. step: batches so far, of `steps`. device: "cpu" or "cuda".
+
+    stop: batches after which it ends before the plan does.
+    """
 
     folder: Path
     plan: Plan
@@ -61,11 +63,17 @@ class Training:
     optimizer: torch.optim.Optimizer
     device: str
     step: int = 0
+    stop: int | None = None
 
     @property
     def steps(self) -> int:
-        """Batches in all."""
+        """Batches of the whole plan."""
         return self.plan.epochs * math.ceil(len(self.seeds) / self.plan.batch)
+
+    @property
+    def last(self) -> int:
+        """Batches after which it ends."""
+        return self.steps if self.stop is None else min(self.stop, self.steps)
 
 
 def begin(folder: Path, plan: Plan, device: str, start: Path | None = None) -> Training:
@@ -82,7 +90,8 @@ def begin(folder: Path, plan: Plan, device: str, start: Path | None = None) -> T
             f"{folder}`"
         )
     torch.manual_seed(plan.seed)
-    network = Network() if start is None else weights.load(start)
+    categories = categories_in(folder)
+    network = Network(categories) if start is None else weights.load(start).knowing(categories)
     network = network.to(device).train()
     optimizer = torch.optim.AdamW(network.parameters(), lr=plan.rate, weight_decay=DECAY)
     return Training(folder, plan, seeds, network, optimizer, device)
@@ -135,7 +144,7 @@ def go_on(training: Training, state: Path, tell: Callable[[str], None]) -> None:
             sums = 0.98 * sums + 0.02 * np.array(_step(training, made))
             if training.step % 50 == 0:
                 share = (training.step - first) / (time.monotonic() - start)
-                left = (training.steps - training.step) / share / 60
+                left = (training.last - training.step) / share / 60
                 weight = 1.0 - 0.98 ** (training.step - first)
                 told = " ".join(f"{value:.4f}" for value in sums / weight)
                 tell(f"batch {training.step} of {training.steps}: loss {told}, {left:.0f} min left")
@@ -150,24 +159,13 @@ def _batches(training: Training) -> Iterator[Sequence[tuple[Seen, Targets]]]:
     """The batches that are left, in the order of the training's seed."""
     plan = training.plan
     per_epoch = math.ceil(len(training.seeds) / plan.batch)
-    while training.step < training.steps:
+    while training.step < training.last:
         epoch, done = divmod(training.step, per_epoch)
         order = seeded(plan.seed, "order", epoch).permutation(np.array(training.seeds)).tolist()
-        for first in range(0, len(order), plan.batch * POOL):
-            pool = order[first : first + plan.batch * POOL]
-            batches = first // plan.batch, math.ceil((first + len(pool)) / plan.batch)
-            if batches[1] <= done:
-                continue
-            made = [_drawn(training, seed, epoch) for seed in pool]
-            whole = sorted(
-                (each for each in made if each is not None), key=lambda each: each[0].size
-            )
-            cut = np.array_split(np.arange(len(whole)), batches[1] - batches[0])
-            mixed = seeded(plan.seed, "mix", epoch, first).permutation(len(cut)).tolist()
-            for number, which in enumerate(mixed):
-                if batches[0] + number < done:
-                    continue
-                yield [whole[index] for index in cut[which]]
+        end = min(len(order), done * plan.batch + (training.last - training.step) * plan.batch)
+        for first in range(done * plan.batch, end, plan.batch):
+            made = (_drawn(training, seed, epoch) for seed in order[first : first + plan.batch])
+            yield [each for each in made if each is not None]
 
 
 def _drawn(training: Training, seed: int, epoch: int) -> tuple[Seen, Targets] | None:
@@ -176,7 +174,7 @@ def _drawn(training: Training, seed: int, epoch: int) -> tuple[Seen, Targets] | 
     if found is None:
         return None
     draw = seeded(training.plan.seed, "example", epoch, seed)
-    seen, made = found.arrays()
+    seen, made = found.arrays(training.network.classes)
     if draw.random() < 0.5:
         seen, made = examples.mirrored(seen, made)
     return examples.recolored(seen, draw), made
@@ -189,19 +187,34 @@ def _step(training: Training, made: Sequence[tuple[Seen, Targets]]) -> tuple[flo
         return 0.0, 0.0, 0.0
     for group in training.optimizer.param_groups:
         group["lr"] = training.plan.rate * _share(training.step / training.steps)
-    seen, *truth = (torch.from_numpy(each).to(training.device) for each in examples.batch(made))
+    training.optimizer.zero_grad(set_to_none=True)
+    sums = np.zeros(3)
+    for each in made:
+        sums += _learned(training, each, 1.0 / len(made))
+    torch.nn.utils.clip_grad_norm_(training.network.parameters(), CLIP)
+    training.optimizer.step()
+    classes, places, votes = sums.tolist()
+    return classes, places, votes
+
+
+def _learned(training: Training, made: tuple[Seen, Targets], share: float) -> Array:
+    """Add a picture's share of a batch's gradient; its share of the losses (3,).
+
+    Each picture is by itself, as when the detector looks: what a crop is padded with would change
+    the mean over which the network normalises.
+    """
+    seen, *truth = (torch.from_numpy(a).to(training.device) for a in examples.alone(*made))
     seen = seen.contiguous(memory_format=torch.channels_last)
-    with torch.autocast(training.device, dtype=torch.bfloat16):
+    # half precision gains nothing on a processor: normalising is slow there
+    faster = training.device == "cuda"
+    with torch.autocast(training.device, dtype=torch.bfloat16, enabled=faster):
         scores, coordinates, offsets = training.network(seen)
     classes, places, votes = loss(
         scores.float(), coordinates.float(), offsets.float(), tuple(truth)
     )
-    training.optimizer.zero_grad(set_to_none=True)
     whole = classes + COORDINATE_WEIGHT * places + OFFSET_WEIGHT * votes
-    torch.autograd.backward(whole)
-    torch.nn.utils.clip_grad_norm_(training.network.parameters(), CLIP)
-    training.optimizer.step()
-    return classes.item(), places.item(), votes.item()
+    torch.autograd.backward(share * whole)
+    return share * np.array([classes.item(), places.item(), votes.item()])
 
 
 def _share(done: float) -> float:

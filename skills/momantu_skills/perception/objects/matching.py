@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from momantu_bt.categories import USUAL
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_skills.perception.objects.shapes import Shape
 
-KNOWN = ("bottle", "bowl", "can", "mug", "box")
-"""Categories that detectors can tell apart. The learned detector's weights keep to this order."""
+KNOWN = tuple(USUAL)
+"""Categories that detectors tell apart unless they say otherwise."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,8 @@ class MatchConfig:
     category_weight: float = 0.6
     """Factor on the score of an object of another shape; with it the score reaches `accepted` only
     if all sizes are nearly exact."""
+    categories: tuple[str, ...] = KNOWN
+    """The categories that are told apart."""
 
 
 def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -> float:
@@ -42,12 +45,13 @@ def score(shape: Shape, asked: ObjectClass, config: MatchConfig | None = None) -
             return 0.0
         squares.append(((measured - told) / tolerance) ** 2)
     fit = 1.0 - 0.5 * math.sqrt(sum(squares) / len(squares)) if squares else 0.75
-    return fit if same_category(shape, asked) else fit * config.category_weight
+    same = same_category(shape, asked, config.categories)
+    return fit if same else fit * config.category_weight
 
 
-def same_category(shape: Shape, asked: ObjectClass) -> bool:
+def same_category(shape: Shape, asked: ObjectClass, categories: Sequence[str] = KNOWN) -> bool:
     """Whether the shape fits the requested category; an unknown category fits all shapes."""
-    return asked.category not in KNOWN or shape.category == asked.category
+    return asked.category not in categories or shape.category == asked.category
 
 
 def misfits(
@@ -67,7 +71,7 @@ def misfits(
             found.append(f"{much} (asked {1000 * told:.0f} ± {1000 * tolerance:.0f} mm)")
     if found:
         return list(dict.fromkeys(found))
-    if asked.category in KNOWN and thing.category != asked.category:
+    if asked.category in config.categories and thing.category != asked.category:
         return [f"no {asked.category} by its shape"]
     return [f"all sizes differ a little: it matches by {100 * thing.score:.0f} %"]
 

@@ -8,16 +8,18 @@ import numpy as np
 import pytest
 from momantu_skills.perception.learned.fusing import Look, fused
 from momantu_skills.perception.learned.instances import instances
+from momantu_skills.perception.learned.network import classes_of
 from momantu_skills.perception.learned.similarity import fit, similarities
 from momantu_skills.perception.learned.solids import Solid, solid
 from momantu_skills.perception.learned.targets import VALID, Truth, targets
-from momantu_skills.perception.objects.matching import KNOWN
 
+from momantu_bt.categories import USUAL
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
 from momantu_bt.world import seeded
 
 EYE = 0.9
 """Height of the camera above the surface, m."""
+CLASSES = classes_of(USUAL)
 
 
 def turn(axis: tuple[float, float, float], degrees: float) -> Array:
@@ -41,10 +43,12 @@ def around(pose: Transform, size: Array, count: int = 900) -> Array:
 def said(points: Array, truth: Truth) -> tuple[Array, Array, Array]:
     """Perfect coordinates, offsets in m, and chances, of points (n, 3) of one thing."""
     grid = points.reshape(-1, 1, 3).astype(np.float32)
-    made = targets(grid, np.full(grid.shape[:2], truth.number, dtype=np.uint8), EYE, [truth])
+    made = targets(
+        grid, np.full(grid.shape[:2], truth.number, dtype=np.uint8), EYE, [truth], CLASSES
+    )
     coordinates = made.coordinates[0, :, :, 0].T.astype(np.float64)
-    chances = np.zeros((len(points), len(KNOWN)))
-    chances[:, truth.category] = 1.0
+    chances = np.zeros((len(points), len(USUAL)))
+    chances[:, list(USUAL).index(truth.category)] = 1.0
     return coordinates, made.offsets[:, :, 0].T * 0.1, chances
 
 
@@ -98,11 +102,11 @@ def test_few_votes_are_no_thing() -> None:
 def test_perfect_answers_give_the_exact_round_thing(name: str, yaw: float) -> None:
     pose = Transform((0.1, 1.0, 0.06), quaternion_from_axis_angle((0, 0, 1), math.radians(yaw)))
     size = np.array([0.07, 0.07, 0.12])
-    truth = Truth(1, KNOWN.index(name), pose, size)
+    truth = Truth(1, name, USUAL[name], pose, size)
     points = around(pose, size)
     coordinates, offsets, chances = said(points, truth)
     assert np.allclose(points + offsets, pose.position, atol=1e-5)
-    found = solid(points, coordinates, chances, np.zeros(len(points), bool), seeded("a"))
+    found = solid(points, coordinates[None], chances, np.zeros(len(points), bool), seeded("a"))
     assert found is not None
     assert found.category == name
     assert np.allclose(found.frame_from_object.position, pose.position, atol=1e-3)
@@ -116,7 +120,7 @@ def test_round_things_say_the_same_however_they_are_turned() -> None:
     spoken = []
     for yaw in (0.0, 1.0, 4.0):
         pose = Transform((0.1, 1.0, 0.1), quaternion_from_axis_angle((0, 0, 1), yaw))
-        spoken.append(said(points, Truth(1, 0, pose, size))[0])
+        spoken.append(said(points, Truth(1, "bottle", USUAL["bottle"], pose, size))[0])
     assert np.allclose(spoken[0], spoken[1], atol=1e-5)
     assert np.allclose(spoken[0], spoken[2], atol=1e-5)
 
@@ -124,8 +128,8 @@ def test_round_things_say_the_same_however_they_are_turned() -> None:
 def test_a_box_has_four_equally_good_answers() -> None:
     pose = Transform((0.0, 1.0, 0.1), quaternion_from_axis_angle((1, 0, 0), math.pi / 2))
     grid = seeded("box").uniform(-0.04, 0.04, (5, 5, 3)) + np.array([0.0, 1.0, 0.1])
-    truth = Truth(1, KNOWN.index("box"), pose, np.array([0.05, 0.08, 0.15]))
-    made = targets(grid.astype(np.float32), np.ones((5, 5), dtype=np.uint8), EYE, [truth])
+    truth = Truth(1, "box", USUAL["box"], pose, np.array([0.05, 0.08, 0.15]))
+    made = targets(grid.astype(np.float32), np.ones((5, 5), dtype=np.uint8), EYE, [truth], CLASSES)
     assert made.coordinates.shape[0] == VALID == 4
     heights = made.coordinates[:, 2]
     assert np.allclose(heights, heights[0])  # all have the upright axis as z
@@ -141,9 +145,9 @@ def test_a_mugs_handle_tells_how_it_is_turned() -> None:
             np.column_stack([np.linspace(0.045, 0.07, 40), np.zeros(40), np.zeros(40)])
         )
         points = np.concatenate([body, bar])
-        coordinates, _, chances = said(points, Truth(1, KNOWN.index("mug"), pose, size))
+        coordinates, _, chances = said(points, Truth(1, "mug", USUAL["mug"], pose, size))
         of_handle = np.arange(len(points)) >= 400
-        found = solid(points, coordinates, chances, of_handle, seeded("mug"))
+        found = solid(points, coordinates[None], chances, of_handle, seeded("mug"))
         assert found is not None
         assert found.handle
         assert found.frame_from_object.yaw == pytest.approx(yaw, abs=0.02)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import math
 import subprocess
 import sys
@@ -18,11 +19,12 @@ from momantu_skills.perception.evaluation import boxes, measure, precision
 from momantu_skills.perception.learned import examples, training, weights
 from momantu_skills.perception.learned.crops import STEP, channels
 from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
-from momantu_skills.perception.learned.network import Network
-from momantu_skills.perception.learned.weights import WeightsError
+from momantu_skills.perception.learned.header import KIND, VERSION, WeightsError
+from momantu_skills.perception.learned.network import Network, classes_of
 from momantu_worlds.labelled.studio import Studio
 
 from momantu_bt import labelled
+from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.cli import main
 from momantu_bt.detector import DETECTORS, known_categories
 from momantu_bt.geometry import Pose2D
@@ -61,6 +63,7 @@ def test_weights_come_back_with_their_card(any_weights: Path) -> None:
 
 
 def spoil(path: Path, how: str) -> None:
+    told = {"kind": f"{KIND} {VERSION}", "categories": json.dumps(dict(USUAL))}
     if how == "missing":
         path.unlink()
     elif how == "text":
@@ -69,31 +72,35 @@ def spoil(path: Path, how: str) -> None:
         path.write_bytes(path.read_bytes()[:5000])
     elif how == "foreign":
         safetensors.torch.save_file({"a": torch.zeros(3)}, path)
+    elif how == "version":
+        safetensors.torch.save_file({"a": torch.zeros(3)}, path, metadata={"kind": f"{KIND} 1"})
     elif how == "other network":
         found = safetensors.torch.load_file(path)
         found.pop("head.bias")
-        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+        safetensors.torch.save_file(found, path, metadata=told)
     else:
         found = safetensors.torch.load_file(path)
         found["head.bias"][0] = float("nan")
-        safetensors.torch.save_file(found, path, metadata={"kind": weights.KIND})
+        safetensors.torch.save_file(found, path, metadata=told)
 
 
 @pytest.mark.parametrize(
-    ("how", "said"),
+    ("how", "code", "said"),
     [
-        ("missing", "cannot be read"),
-        ("text", "cannot be read"),
-        ("cut", "cannot be read"),
-        ("foreign", "holds no weights of the learned detector"),
-        ("other network", "another network: 'head.bias'"),
-        ("nan", "not finite"),
+        ("missing", "WEIGHTS_BROKEN", "cannot be read"),
+        ("text", "WEIGHTS_BROKEN", "cannot be read"),
+        ("cut", "WEIGHTS_BROKEN", "cannot be read"),
+        ("foreign", "WEIGHTS_FOREIGN", "holds no weights of the learned detector"),
+        ("version", "WEIGHTS_OUTDATED", "of version 1, this detector uses version 2"),
+        ("other network", "WEIGHTS_FOREIGN", "another network: 'head.bias'"),
+        ("nan", "WEIGHTS_BROKEN", "not finite"),
     ],
 )
-def test_a_wrong_weights_file_is_told(how: str, said: str, any_weights: Path) -> None:
+def test_a_wrong_weights_file_is_told(how: str, code: str, said: str, any_weights: Path) -> None:
     spoil(any_weights, how)
-    with pytest.raises(WeightsError, match=said):
+    with pytest.raises(WeightsError, match=said) as raised:
         weights.load(any_weights)
+    assert raised.value.code == code
 
 
 def test_evaluate_tells_a_wrong_weights_file(
@@ -136,7 +143,7 @@ def test_crops_fit_the_network(pictures: Path) -> None:
     for seed in range(4):
         example = examples.example(labelled.read(pictures, seed))
         assert example is not None
-        seen, made = example.arrays()
+        seen, made = example.arrays(classes_of(USUAL))
         assert seen.shape[1] % STEP == seen.shape[2] % STEP == 0
         assert made.classes.shape == (seen.shape[1] // 2, seen.shape[2] // 2)
         assert np.isfinite(seen).all()
@@ -150,7 +157,7 @@ def test_kept_crops_are_the_same(pictures: Path) -> None:
     again = examples.kept(pictures, 0)
     assert fresh is not None
     assert again is not None
-    (one, first), (other, second) = fresh.arrays(), again.arrays()
+    (one, first), (other, second) = (e.arrays(classes_of(USUAL)) for e in (fresh, again))
     assert np.array_equal(one, other)
     assert np.allclose(first.coordinates, second.coordinates, atol=1e-6)
     damaged = pictures / examples.FOLDER / "000000.npz"
@@ -177,6 +184,43 @@ def test_an_interrupted_training_ends_as_a_whole_one(pictures: Path, tmp_path: P
     assert rest.step == whole.step == 4
     for name, value in whole.network.state_dict().items():
         assert torch.allclose(value, rest.network.state_dict()[name], atol=1e-5), name
+
+
+def test_a_training_ends_before_its_plan_and_goes_on(pictures: Path, tmp_path: Path) -> None:
+    plan = training.Plan(epochs=3, batch=2, rate=1e-3, seed=3)
+    whole = trained(pictures, plan, tmp_path / "whole.state")
+    part = training.begin(pictures, plan, "cpu")
+    part.stop = 3
+    training.go_on(part, tmp_path / "part.state", lambda line: None)
+    assert part.step == 3
+    rest = trained(pictures, plan, tmp_path / "part.state")
+    assert rest.step == whole.step == 6
+    for name, value in whole.network.state_dict().items():
+        assert torch.allclose(value, rest.network.state_dict()[name], atol=1e-5), name
+
+
+def test_weights_that_learned_go_on_with_another_category(any_weights: Path) -> None:
+    known = weights.load(any_weights)
+    more = known.knowing({**USUAL, "spray": Symmetry.NONE})
+    assert more.classes == ("nothing", *USUAL, "spray", "handle")
+    seen = torch.zeros(1, 9, 32, 32)
+    (scores, *rest), (others, *same) = known(seen), more(seen)
+    assert all(torch.equal(one, other) for one, other in zip(rest, same, strict=True))
+    assert torch.equal(scores[:, :6], others[:, :6])
+    assert torch.equal(scores[:, 6], others[:, 7])
+    path = any_weights.with_name("more.safetensors")
+    weights.save(path, more, {})
+    assert weights.load(path).categories == more.categories
+
+
+def test_the_categories_are_those_of_the_weights(
+    any_weights: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    weights.save(any_weights, Network({**USUAL, "spray": Symmetry.NONE}), {})
+    assert LearnedDetector.categories == tuple(USUAL)
+    assert LearnedDetector(any_weights).categories == (*USUAL, "spray")
+    monkeypatch.setenv(WEIGHTS, str(any_weights))
+    assert "spray" in (known_categories() or ())
 
 
 def test_train_writes_weights_that_can_be_used(pictures: Path, tmp_path: Path) -> None:
@@ -210,13 +254,27 @@ def test_a_training_that_cannot_begin_is_told(
     assert "belongs to a training with 4 pictures" in capsys.readouterr().err
 
 
-def test_a_search_with_broken_weights_fails_with_their_sentence(
+@pytest.mark.parametrize(
+    ("how", "asked", "code", "said"),
+    [
+        ("text", "can", "WEIGHTS_BROKEN", "cannot be read"),
+        ("foreign", "can", "WEIGHTS_FOREIGN", "holds no weights of the learned detector"),
+        ("version", "can", "WEIGHTS_OUTDATED", "of version 1"),
+        ("", "spray", "CATEGORY_UNKNOWN", "know no 'spray'; they know bottle, bowl, can, mug, box"),
+    ],
+)
+def test_a_search_says_why_the_weights_cannot_be_used(
+    how: str,
+    asked: str,
+    code: str,
+    said: str,
     onlooker: Callable[..., ScriptedRobot],
     seen_scene: Callable[[], object],
     any_weights: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    spoil(any_weights, "text")
+    if how:
+        spoil(any_weights, how)
     monkeypatch.setenv(WEIGHTS, str(any_weights))
     table = Surface(Pose2D(1.0, 0.0, 0.0), (0.6, 1.2), 0.72, (math.pi,))
     things = [Block((0.6, 1.2, 0.03), (1.0, 0.0, 0.705)), Round((0.95, 0.2, 0.72), 0.13, 0.035)]
@@ -225,10 +283,11 @@ def test_a_search_with_broken_weights_fails_with_their_sentence(
         robot=onlooker(things),
         site=scripted_site(surfaces={"table": table}),
         services={"planning_scene": seen_scene(), "localization": object()},
-        inputs={"object": ObjectClass("can"), "on": "table", "detector": "learned"},
+        inputs={"object": ObjectClass(asked), "on": "table", "detector": "learned"},
     )
-    assert result.failure.code == "SKILL_ERROR"
-    assert f"the weights {any_weights} cannot be read" in result.failure.message
+    assert result.failure.code == code
+    assert any_weights.name in result.failure.message
+    assert said in result.failure.message
 
 
 def test_the_bundled_weights_are_small_and_say_how_they_were_made() -> None:
