@@ -16,7 +16,7 @@ CLOSELY = 2
 """Every n-th pixel in each direction gives a point."""
 
 Seen = Callable[[Snapshot, HeldObject | None, int], Array]
-"""Points (n, 3) in odom of a picture, without the robot and what it held; the number: see CLOSELY."""
+"""Points (n, 3) in odom of a picture, without the robot and its load; the number: see CLOSELY."""
 
 
 class RecentPictures:

@@ -137,13 +137,11 @@ class Scene:
         places = np.rint(new * PER_METRE).astype(np.int64)
         return np.asarray(unique_rows(places)[0] / PER_METRE)
 
-    def _seen(
-        self, snapshot: Snapshot, held: HeldObject | None, stride: int | None = None
-    ) -> Array:
+    def _seen(self, snapshot: Snapshot, held: HeldObject | None, stride: int = 0) -> Array:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
         image, odom_from_base = snapshot.image, snapshot.odom_from_base
-        stride = stride or self.config.pixel_stride
-        optical = points_from_depth(image.depth, image.intrinsics, stride)
+        every = stride or self.config.pixel_stride
+        optical = points_from_depth(image.depth, image.intrinsics, every)
         base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
         base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self._reach]
         own = self.is_robot(base_points, snapshot.state, held)
