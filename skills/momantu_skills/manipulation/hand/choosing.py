@@ -55,7 +55,7 @@ def options_for(arm: Arm, thing: DetectedObject, by: Hold = "any") -> Options:
     """
     handle = None
     if _may_have_handle(thing, by):
-        handle = seen_handle(arm.scene.points_since(_still(arm)), thing)
+        handle = seen_handle(arm.scene.recent.points_since(_still(arm)), thing)
     found: list[Grasp] = []
     missing: dict[str, str] = {}
     if by in ("any", "body"):

@@ -28,9 +28,9 @@ radius and the noise; farther away other things stand."""
 BOTTOM, TOP = 0.014, 0.006
 """Heights above the lower and below the upper end of the body within which they do not count, m:
 those of the surface, and of the rim."""
-FEW = 8
-"""Fewest points of a handle: every fourth pixel in each direction of one picture shows 20 of one at
-1 m; of one behind its mug a picture from above shows three."""
+FEW = 10
+"""Fewest points of a handle: every second pixel in each direction of one picture shows 80 of one at
+1 m; of one behind its mug a picture from above shows some."""
 ONE_SIDE = 0.85
 """Least length of the mean of their directions: they lie on one side of the body."""
 STANDS_OUT = 0.015

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -30,6 +29,7 @@ from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, obj
 from momantu_skills.manipulation.scene import outreach
 from momantu_skills.manipulation.scene.columns import DOUBT, HALF_DIAGONAL, WALL, Columns
 from momantu_skills.manipulation.scene.dropped import dropped
+from momantu_skills.manipulation.scene.recent import RecentPictures
 from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
 from momantu_skills.manipulation.scene.surroundings import (
     SeenSpace,
@@ -53,8 +53,6 @@ PER_METRE = 1e4
 """Places of cells are whole tenths of a millimetre, so that a cell seen twice is one cell."""
 SUPPOSED = PlanningConfig().supposed[0]
 """How much nearer than on its maps what may be as tall as a wall stands, m, where nobody says."""
-KEPT = 8
-"""Newest pictures whose points are kept: those of two looks for an object, and of its grasp."""
 FORGET = 2.0
 """Distance from the base above which cells and supports are deleted, m, because odometry has
 drifted since."""
@@ -89,7 +87,7 @@ class Scene:
         self.model = arm_model(description)
         self.surroundings = Surroundings()
         self.points: Array = np.empty((0, 3))
-        self._pictures: deque[tuple[float, Array]] = deque(maxlen=KEPT)
+        self.recent = RecentPictures(self._seen)
         self.known: tuple[Support, ...] = ()
         self.overhead: tuple[Overhead, ...] = ()
         self.columns: Columns | None = None
@@ -119,7 +117,7 @@ class Scene:
         nearest = self.model.description.camera()[1].min_depth
         self.seen_space.add(image, odom_from_camera, nearest)
         self.points = self._seen(snapshot, held)
-        self._pictures.append((image.stamp, self.points))
+        self.recent.add(snapshot, held)
         new = cells_of(self.points, odom_from_camera.position, FLOOR_BAND, self.config)
         cells = self._with_older(new, self.surroundings.cells, snapshot)
         new = faces_of(self.points, FLOOR_BAND, self.config)
@@ -139,10 +137,11 @@ class Scene:
         places = np.rint(new * PER_METRE).astype(np.int64)
         return np.asarray(unique_rows(places)[0] / PER_METRE)
 
-    def _seen(self, snapshot: Snapshot, held: HeldObject | None) -> Array:
+    def _seen(self, snapshot: Snapshot, held: HeldObject | None, stride: int = 0) -> Array:
         """Points (n, 3) in odom of the picture, without the robot, within its reach."""
         image, odom_from_base = snapshot.image, snapshot.odom_from_base
-        optical = points_from_depth(image.depth, image.intrinsics, self.config.pixel_stride)
+        every = stride or self.config.pixel_stride
+        optical = points_from_depth(image.depth, image.intrinsics, every)
         base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
         base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self._reach]
         own = self.is_robot(base_points, snapshot.state, held)
@@ -161,11 +160,6 @@ class Scene:
         depth = image.depth[np.clip(v, 0, height - 1), np.clip(u, 0, width - 1)]
         gone = inside & (depth > z + SEEN_THROUGH)
         return np.asarray(near & ~gone)
-
-    def points_since(self, stamp: float) -> Array:
-        """Points (n, 3) in odom of the newest pictures that were taken after a time, s."""
-        later = [points for taken, points in self._pictures if taken > stamp]
-        return np.vstack([np.empty((0, 3)), *later])
 
     def add_support(self, plane: SupportPlane) -> None:
         """Add a measured surface."""
