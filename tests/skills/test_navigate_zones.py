@@ -12,6 +12,7 @@ from momantu_skills.navigate import Navigate
 from momantu_skills.navigation.localize.service import LocalizationService
 
 from momantu_bt.geometry import Pose2D
+from momantu_bt.marker import Line
 from momantu_bt.testing import ScriptedWorld
 from momantu_bt.testing.skill_run import SkillResult, run_skill
 from momantu_bt.zone import Zone
@@ -62,6 +63,10 @@ def test_a_keep_out_zone_on_the_way_is_driven_round(flat: Flat, flat_scene: Flat
     result = run.drive(in_front_of="desk")
     assert result.status == "SUCCESS", result.explain()
     assert 0.0 < run.nearest["rug"] < 0.6
+    drawn = [each for each in result.markers if each.name == "zone rug"]
+    assert isinstance(drawn[0], Line)
+    assert (drawn[0].frame, drawn[0].closed) == ("map", True)
+    assert drawn[0].points[:, :2].tolist() == [list(corner) for corner in rug.corners]
 
 
 def test_a_slow_zone_is_crossed_at_its_speed(flat: Flat, flat_scene: FlatSceneOf) -> None:

@@ -16,6 +16,7 @@ from momantu_bt.messages import BaseVelocity, JointPositions
 from momantu_bt.robot import CAMERA_CARRIER, BaseLimits, Robot
 from momantu_bt.service import HeldObject, Localization, offers
 from momantu_bt.skill import Run, Skill
+from momantu_bt.zone import ZoneKind
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
 from momantu_skills.navigation.map.believed import believed_maps
@@ -41,6 +42,8 @@ HANDS_OVER = 0.03
 """Height above a surface's nominal top from which arm and load count as being over it, m."""
 PATH_HEIGHT = 0.03
 """Height above the floor at which a path is drawn, m."""
+ZONE_COLORS: dict[ZoneKind, str] = {"keep_out": "red", "slow": "orange", "preferred": "green"}
+"""Colours in which the outlines of zones are drawn."""
 COSTLESS = 0.5
 """Clearance from which a cell is drawn as free, m."""
 SHOWN = 3.0
@@ -149,15 +152,27 @@ class Vehicle:
         return Pose2D.from_transform(self._frames.lookup(MAP, ODOM))
 
     def show(self, path: Array) -> None:
-        """Draw a path (n, 2) and the costmap, if somebody watches; it changes nothing."""
+        """Draw a path (n, 2), the costmap and zones, if somebody watches; it changes nothing."""
         if not self._skill.host.watched:
             return
-        points = np.column_stack([path, np.full(len(path), PATH_HEIGHT)])
+        points = _over_floor(path)
         costs = 1.0 - self.costmap.field / COSTLESS
         x, y, cell = (float(part) for part in self.costmap.frame)
         self._skill.draw(
             Line("path", points, frame=MAP, color="blue", width=0.05, seconds=SHOWN),
             Grid("costmap", costs, (x, y), cell, frame=MAP, color="purple", seconds=SHOWN),
+            *(
+                Line(
+                    f"zone {name}",
+                    _over_floor(corners),
+                    frame=MAP,
+                    closed=True,
+                    color=ZONE_COLORS[kind],
+                    width=0.05,
+                    seconds=SHOWN,
+                )
+                for name, (kind, corners) in self.costmap.zones.outlines.items()
+            ),
         )
 
     def speed(self) -> Speed:
@@ -316,6 +331,11 @@ class Vehicle:
         if not self.costmap.grows:
             return None
         return np.where(self.costmap.unknown, self.unknown_cost, 1.0).astype(np.float32)
+
+
+def _over_floor(points: Array) -> Array:
+    """Points (n, 2) of the floor plan where they are drawn, (n, 3)."""
+    return np.column_stack([points, np.full(len(points), PATH_HEIGHT)])
 
 
 def _moved_little(positions: Array, before: Array) -> bool:

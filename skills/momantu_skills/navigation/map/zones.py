@@ -34,6 +34,12 @@ class Zones:
         self._preferred = _of_kind(zones, "preferred")
 
     @property
+    def outlines(self) -> dict[str, tuple[ZoneKind, Array]]:
+        """Kind and corners (n, 2), map, m, of each zone."""
+        every = {**self._kept_out, **self._slow, **self._preferred}
+        return {name: (zone.kind, np.array(zone.corners)) for name, zone in every.items()}
+
+    @property
     def keep_out(self) -> tuple[str, ...]:
         """Names of the zones to keep out of."""
         return tuple(self._kept_out)
