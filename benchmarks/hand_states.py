@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import math
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -44,6 +45,7 @@ def felt(hand: Hand) -> dict[str, Any]:
     if known:
         mean = mean_weight(known)
         found |= {"weight": mean.value, "noise": mean.noise, "shared": mean.shared}
+        found["aside"] = math.hypot(*mean.aside)
     found["raised"] = hand.scene.payload.raised
     try:
         view = between_pads.between_pads(hand.scene.scene, take(hand.robot, hand.frames))

@@ -1,9 +1,10 @@
 """The watchdog: ends steps that hang, by wall time.
 
 If a skill's step in Python takes longer than the run's limit, the `patience`, a signal raises an
-exception in it. Signal handlers do not run in native code. So for native code, and for hangs
-outside of skills, faulthandler's thread ends the process; it does not need the interpreter's lock.
-It writes the stack of each thread to standard error and exits with code 1.
+exception in it. Time for which the step could have run, but other processes had the cores, does not
+count: a busy machine is no reason to fail. Signal handlers do not run in native code. So for native
+code, and for hangs outside of skills, faulthandler's thread ends the process; it does not need the
+interpreter's lock. It writes the stack of each thread to standard error and exits with code 1.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -27,7 +29,11 @@ _FRESH = 0.05
 
 Each restart costs a new thread.
 """
+_LEAST = 0.02
+"""Time that is left, s, for which it is not worth to wait on."""
 _STDERR = 2
+_SCHEDULED = Path("/proc/self/schedstat")
+"""What Linux tells of the main thread: ns on a core, ns ready to run and waiting for one, ..."""
 
 
 class Hung(BaseException):
@@ -48,6 +54,7 @@ class Watchdog:
         self._before: Any = None
         self._timer_before = (0.0, 0.0)
         self._entered = 0.0
+        self._begun, self._waited = 0.0, 0.0
 
     def __enter__(self) -> Watchdog:
         in_main = threading.current_thread() is threading.main_thread()
@@ -80,6 +87,7 @@ class Watchdog:
         """Report that a skill will make a step or will be closed."""
         if self._on:
             self._in_step, self._rung = True, False
+            self._begun = time.monotonic()
             signal.setitimer(signal.ITIMER_REAL, self.patience, self.patience)
 
     def end_step(self) -> None:
@@ -100,13 +108,28 @@ class Watchdog:
                 self._stretch()
 
     def _stretch(self) -> None:
-        self._stretched = time.monotonic()
+        self._stretched, self._waited = time.monotonic(), waited_for_a_core()
         faulthandler.dump_traceback_later(LAST * self.patience, exit=True, file=_STDERR)
 
     def _rang(self, number: int, frame: FrameType | None) -> None:
         if not self._in_step:
             return
+        busy = waited_for_a_core() - self._waited
+        left = self.patience - (time.monotonic() - self._begun - busy)
+        if left > _LEAST and not self._rung:
+            self._begun += busy
+            self._stretch()
+            signal.setitimer(signal.ITIMER_REAL, left, self.patience)
+            return
         if not self._rung:
             self._rung = True
             self._stretch()  # once more, for the skill's own clean-up
         raise Hung
+
+
+def waited_for_a_core() -> float:
+    """Time for which this process was ready to run and no core was free, s; 0 if unknown."""
+    try:
+        return int(_SCHEDULED.read_text(encoding="ascii").split()[1]) * 1e-9
+    except (OSError, ValueError, IndexError):
+        return 0.0

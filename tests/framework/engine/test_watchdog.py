@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -11,7 +12,8 @@ import time
 
 import pytest
 
-from momantu_bt.engine.watchdog import Hung, Watchdog
+from momantu_bt.engine import watchdog
+from momantu_bt.engine.watchdog import Hung, Watchdog, waited_for_a_core
 from momantu_bt.running.launch import LaunchError
 from momantu_bt.skill import Run, Skill
 
@@ -100,6 +102,31 @@ def test_nothing_rings_outside_of_a_step():
         dog.begin_step()
         with pytest.raises(Hung):
             signal.pause()
+
+
+def test_time_for_which_other_processes_had_the_cores_does_not_count(monkeypatch):
+    told = iter([1.0])
+    monkeypatch.setattr(watchdog, "waited_for_a_core", lambda: next(told, 1.45))
+    with Watchdog(0.5) as dog:
+        dog.begin_step()
+        began = time.monotonic()
+        signal.pause()
+        with pytest.raises(Hung):
+            signal.pause()
+        assert 0.94 < time.monotonic() - began < 5.0
+
+
+def test_waiting_for_a_core_grows_where_more_run_than_there_are_cores():
+    before = waited_for_a_core()
+    code = "import time; e = time.monotonic() + 1\nwhile time.monotonic() < e: pass"
+    count = 2 * (os.cpu_count() or 1)
+    others = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(count)]
+    end = time.monotonic() + 1.0
+    while time.monotonic() < end:
+        pass
+    for other in others:
+        other.wait()
+    assert 0.05 < waited_for_a_core() - before < 5.0
 
 
 def test_without_an_end_of_patience_and_in_other_threads_it_does_nothing():

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.hand.between_pads import View
 from momantu_skills.manipulation.hand.evidence import (
+    DRAG,
     SURE,
     Evidence,
     Grip,
@@ -35,7 +36,7 @@ NOTHING_SEEN = View(0, 0.0)
         (PRESSING, Weight(3.9, 0.25, 0.1), Grip.HELD),
         (PRESSING, Weight(3.9, 0.25, 0.6), Grip.HELD),
         (FREE, Weight(0.1, 0.25, 0.1), Grip.EMPTY),
-        (PRESSING, Weight(0.6, 0.08, 0.06), Grip.HELD),
+        (PRESSING, Weight(0.6, 0.08, 0.06), Grip.UNKNOWN),  # friction may drag the hand down
         (PRESSING, Weight(0.0, 0.25, 0.1), Grip.UNKNOWN),  # jammed, or what is held stands
         (FREE, Weight(3.9, 0.25, 0.1), Grip.UNKNOWN),
         (Fingers(0.07, 3.0), None, Grip.UNKNOWN),
@@ -112,6 +113,35 @@ def test_no_weight_alone_decides(weight: float, sigma: float, raised: bool) -> N
 
 def test_a_hand_that_is_pushed_up_says_little() -> None:
     assert abs(of_weight(Weight(-8.0, 0.25, 0.1), raised=False).odds) < SURE
+
+
+@given(
+    st.floats(0.3, 15.0),
+    st.floats(8.0, 100.0),
+    st.floats(0.05, 0.4),
+    st.booleans(),
+    st.floats(0, 6),
+)
+def test_a_hand_that_is_pushed_aside_leans_and_its_weight_is_no_proof(
+    weight: float, push: float, sigma: float, raised: bool, way: float
+) -> None:
+    """What hangs in a hand pulls straight down; jammed fingers that lean may show some weight."""
+    aside = (push * math.cos(way), push * math.sin(way))
+    found = of_weight(Weight(weight, 0.08, sigma, aside), raised=raised)
+    pressing = of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG)
+    assert weighed([pressing, found]) is Grip.UNKNOWN
+    assert "pushed aside" in found.text
+
+
+@given(st.floats(0.6, 15.0), st.floats(0.0, 2.0), st.booleans())
+def test_what_pulls_straight_down_is_held(weight: float, aside: float, raised: bool) -> None:
+    """It may swing a little. Friction may drag an empty hand down as light things do."""
+    found = of_weight(Weight(weight, 0.08, 0.07, (aside, 0.0)), raised=raised)
+    grip = weighed([of_fingers(Fingers(0.06, 45.0), 0.1, CONFIG), found])
+    if raised or weight > DRAG + 0.5:
+        assert grip is Grip.HELD
+    elif weight < DRAG - 0.5:
+        assert grip is Grip.UNKNOWN
 
 
 def test_a_weight_is_as_sure_as_its_sensor() -> None:

@@ -43,9 +43,12 @@ class Wrist:
             self.payload.update(self.robot, self.robot.state())
 
     @property
+    def frame(self) -> str:
+        return self.robot.description.sensors[self.name].frame
+
+    @property
     def up(self) -> np.ndarray:
-        frame = self.robot.description.sensors[self.name].frame
-        return self.frames.lookup("odom", frame).rotation[2]
+        return self.frames.lookup("odom", self.frame).rotation[2]
 
 
 def test_the_weight_is_what_the_load_has_grown_by() -> None:
@@ -58,7 +61,27 @@ def test_the_weight_is_what_the_load_has_grown_by() -> None:
     assert weight.shared < 0.2 * BIAS
     many = mean_weight([weight] * 16)
     assert many.noise == pytest.approx(weight.noise / 4)
+    assert many.aside == pytest.approx(weight.aside)
     assert many.shared == pytest.approx(weight.shared)
+
+
+@pytest.mark.parametrize("empty", [0.0, 2.0])
+def test_a_push_from_the_side_is_told_beside_the_weight(empty: float) -> None:
+    wrist = Wrist()
+    odom_from_sensor = wrist.frames.lookup("odom", wrist.frame).rotation
+    wrist.force = empty * odom_from_sensor[0]
+    wrist.measure_empty()
+    wrist.force = wrist.force + odom_from_sensor.T @ (3.0, -4.0, -3.9)
+    weight = wrist.payload.weigh(wrist.robot)
+    assert weight.value == pytest.approx(3.9)
+    assert weight.aside == pytest.approx((3.0, -4.0))
+
+
+def test_a_sensor_that_feels_the_hands_own_weight_tells_no_push_from_the_side() -> None:
+    wrist = Wrist()
+    wrist.force = -15.0 * wrist.up
+    wrist.measure_empty()
+    assert math.isnan(math.hypot(*wrist.payload.weigh(wrist.robot).aside))
 
 
 def test_a_short_contact_of_the_open_hand_does_not_count() -> None:

@@ -31,9 +31,17 @@ ALONE = (0.996, 0.005)
 which are rarer in use than among those states, so they count as one in two hundred."""
 SEEN, THROUGH = (0.14, 0.016), (0.001, 0.12)
 """The same of a picture that shows something between the pads, and of one that shows through."""
-LEANING = (0.19, 0.016)
-"""Share of states in which something under the hand carries what it holds, or pushes it up if it is
-empty."""
+LEANING = (0.19, 0.08)
+"""Share of states in which something under the hand carries what it holds, or pushes at the hand if
+it is empty."""
+DRAWN = 0.15
+"""Share of the empty hands that lean on something which draws them down too."""
+DRAGGED, DRAG = 0.03, 1.5
+"""Share of empty hands that friction drags straight down, by up to DRAG, N. It is a hundredth among
+those states, and counts threefold: light things are then not believed before the hand is raised."""
+SWAY = 1.0
+"""Standard deviation of the load aside, per axis, of what hangs in the hand while the arm is at
+rest, N: 1.5 N at the most among ten things held; hands that lean show 2 to 100 N."""
 HANGING = 0.004
 """Share of states in which something hangs on an empty hand."""
 NOISE = 1.0 / math.sqrt(RECENT)
@@ -41,7 +49,7 @@ NOISE = 1.0 / math.sqrt(RECENT)
 LIGHTEST, HEAVIEST = 0.3, 20.0
 """Range of the weights that are expected in a hand, N, each factor of two as likely."""
 RAISED = 0.02
-"""The share of LEANING that is left in a hand that was raised since its fingers moved."""
+"""What is left of LEANING and DRAGGED in a hand that was raised since its fingers moved."""
 SOME = 25
 """Points between the pads that prove something: 1 cm2 at 0.6 m."""
 EMPTY_FROM = 0.5
@@ -103,20 +111,40 @@ def of_weight(measured: Weight, *, raised: bool) -> Evidence:
     """A weight in the hand.
 
     What the hand holds shows its weight, unless something carries it: in part, or wholly. An empty
-    hand shows none, unless it leans on something or something hangs on it. raised: since the
-    fingers moved, so that nothing that was under the hand carries it.
+    hand shows none, unless it leans on something or something hangs on it. What hangs pulls
+    straight down; what the hand leans on may push it aside too, or drag it down. raised: since
+    the fingers moved, so that nothing that was under the hand carries it.
     """
     weight, sigma = measured.value, measured.sigma
-    text = f"the hand carries {weight:.1f} N"
+    aside = math.hypot(*measured.aside)
+    pulled = f", and is pushed aside with {aside:.0f} N" if aside > 4.0 * SWAY else ""
+    text = f"the hand carries {weight:.1f} N{pulled}"
+    straight, leaning = _aside(aside, sigma)
     weight = min(max(weight, -HEAVIEST), HEAVIEST)
     nothing = math.exp(-0.5 * (weight / sigma) ** 2) / (sigma * math.sqrt(2.0 * math.pi))
     below = np.diff(ndtr((weight - EDGES) / sigma)) * -1.0  # probability of each interval
-    full, in_part, hung = (float(below @ density) for density in (FULL, IN_PART, HUNG))
+    full, in_part, hung, dragged = (float(below @ each) for each in (FULL, IN_PART, HUNG, RUBBED))
     pushed = float(ndtr(-weight / sigma)) / HEAVIEST
     held, empty = (share * (RAISED if raised else 1.0) for share in LEANING)
-    with_it = (1.0 - held) * full + held * (nothing + in_part + pushed) / 3
-    without = (1.0 - empty - HANGING) * nothing + empty * pushed + HANGING * hung
+    shown = (nothing + in_part + pushed) / 3
+    with_it = (1.0 - held) * full * straight + held * shown * leaning
+    leant = (1.0 - DRAWN) * pushed + DRAWN * in_part
+    rubbed = DRAGGED * (RAISED if raised else 1.0)
+    free = (1.0 - empty - rubbed - HANGING) * nothing + HANGING * hung + rubbed * dragged
+    without = free * straight + empty * leant * leaning
     return Evidence("weight", _odds(with_it, without), text)
+
+
+def _aside(aside: float, sigma: float) -> tuple[float, float]:
+    """Density of a load aside, N, of what hangs, and of a hand that leans on something, 1/N2.
+
+    It is normal, or as often anything up to HEAVIEST. Where it is not known, both are 1.
+    """
+    if math.isnan(aside):
+        return 1.0, 1.0
+    variance = SWAY**2 + sigma**2
+    straight = math.exp(-0.5 * aside**2 / variance) / (2.0 * math.pi * variance)
+    return straight, 0.5 * straight + 0.5 / (math.pi * HEAVIEST**2)
 
 
 EDGES = np.concatenate([[0.0], np.geomspace(LIGHTEST, HEAVIEST, 60)])
@@ -129,6 +157,8 @@ IN_PART = (1.0 / np.maximum(_MIDDLES, LIGHTEST) - 1.0 / HEAVIEST) / _SPAN
 """The same if something carries a part of it, a share that is uniform."""
 HUNG = np.full(len(_MIDDLES), 1.0 / HEAVIEST)
 """The same of what hangs on an empty hand."""
+RUBBED = np.where(_MIDDLES < DRAG, 1.0 / DRAG, 0.0)
+"""The same of what friction drags an empty hand down with."""
 
 
 def _odds(held: float, empty: float) -> float:

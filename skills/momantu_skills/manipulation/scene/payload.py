@@ -51,12 +51,14 @@ class Weight:
     """A weight, N.
 
     noise: standard deviation of what differs from reading to reading, N. shared: the same of the
-    error that all readings have in common.
+    error that all readings have in common. aside: the load along the odom frame's x and y, N, NaN
+    if it is not known: what hangs in the hand pulls straight down.
     """
 
     value: float
     noise: float
     shared: float
+    aside: tuple[float, float] = (math.nan, math.nan)
 
     @property
     def sigma(self) -> float:
@@ -66,8 +68,9 @@ class Weight:
 
 def mean_weight(weights: Sequence[Weight]) -> Weight:
     """The mean of several readings: their noise averages out, and what they share does not."""
-    value, noise, shared = np.mean([(w.value, w.noise, w.shared) for w in weights], axis=0)
-    return Weight(float(value), float(noise) / math.sqrt(len(weights)), float(shared))
+    rows = [(w.value, w.noise, w.shared, *w.aside) for w in weights]
+    value, noise, shared, x, y = (float(mean) for mean in np.mean(rows, axis=0))
+    return Weight(value, noise / math.sqrt(len(weights)), shared, (x, y))
 
 
 def wrist_sensor(description: RobotDescription) -> str | None:
@@ -107,7 +110,7 @@ class Payload:
         load = self._load(robot)
         if load is not None:
             self._empty.append(load[0])
-            self._up, self._measured = load[1], state.stamp
+            self._up, self._measured = load[1][2], state.stamp
 
     def _follow(self, state: RobotState, frame: str, open_: bool) -> None:
         """Note how high the hand is above its lowest place since the fingers moved."""
@@ -130,15 +133,16 @@ class Payload:
         load = self._load(robot)
         if load is None:
             return None
-        force, up = load
+        force, odom_from_sensor = load
         if self._up is None:
-            return Weight(-float(force @ up), NOISE, BIAS)
+            return _weight(odom_from_sensor @ force, BIAS, tells_aside=True)
         empty = np.median(self._empty, axis=0)
-        turned = math.acos(float(np.clip(self._up @ up, -1.0, 1.0)))
-        if np.linalg.norm(empty) > HEAVY and turned > TURNED:
+        turned = math.acos(float(np.clip(self._up @ odom_from_sensor[2], -1.0, 1.0)))
+        heavy = np.linalg.norm(empty) > HEAVY
+        if heavy and turned > TURNED:
             return None
         shared = MEDIAN * NOISE / math.sqrt(len(self._empty))
-        return Weight(-float((force - empty) @ up), NOISE, shared)
+        return _weight(odom_from_sensor @ (force - empty), shared, tells_aside=not heavy)
 
     def _rests(self, state: RobotState) -> bool:
         """Whether the robot stands still: by its speeds, or by where its joints were before.
@@ -154,7 +158,7 @@ class Payload:
         return moved < AT_REST * (state.stamp - before.stamp)
 
     def _load(self, robot: Robot) -> tuple[Array, Array] | None:
-        """The force (3,) and the upward direction (3,), both in the sensor's frame."""
+        """The force (3,) in the sensor's frame, N, and odom_from_sensor (3, 3)."""
         name = wrist_sensor(robot.description)
         if name is None:
             return None
@@ -164,7 +168,16 @@ class Payload:
         except Failure:
             return None
         assert isinstance(reading, WrenchReading)
-        return reading.force, rotation[2]
+        return reading.force, rotation
+
+
+def _weight(load: Array, shared: float, *, tells_aside: bool) -> Weight:
+    """What a load (3,) in odom, N, tells.
+
+    tells_aside: not where the hand's own weight is in it, of which a small turn makes a load aside.
+    """
+    aside = (float(load[0]), float(load[1])) if tells_aside else (math.nan, math.nan)
+    return Weight(-float(load[2]), NOISE, shared, aside)
 
 
 def at_rest(state: RobotState) -> bool:
