@@ -175,7 +175,7 @@ def plain(board: Board, seen: Sequence[Seen], model: Model) -> tuple[Array, Arra
     points = board.points()
     shape = (1, -1, 3), (1, -1, 2)
     if model is Model.FISHEYE:
-        flags = cv2.fisheye.CALIB_RECOMPUTE_EXTRINSIC | cv2.fisheye.CALIB_FIX_SKEW
+        flags = cv2.CALIB_RECOMPUTE_EXTRINSIC | cv2.CALIB_FIX_SKEW
         objects: list[Any] = [points[each.indices].reshape(shape[0]) for each in seen]
         pixels: list[Any] = [each.pixels.reshape(shape[1]) for each in seen]
         found: Any = cv2.fisheye.calibrate(

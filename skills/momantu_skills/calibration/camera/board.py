@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
 from momantu_bt.tags import UNIT_CORNERS
+from momantu_skills.calibration.camera import tag_edges
 from momantu_skills.calibration.errors import CalibrationError
 
 with lazily():
@@ -20,8 +21,6 @@ with lazily():
 
 KINDS = ("chessboard", "charuco", "aprilgrid")
 _WORDS = re.compile(r"([a-z]+)[ :]+([0-9]+)x([0-9]+)")
-_WINDOW = (3, 3)
-"""Half of the window in which a tag's corner is refined, px."""
 _SHARE, _MOST_WINDOW = 0.4, 15
 """Half of a chessboard's window: this share of the smallest square's edge, at most so many px."""
 _ENDS = (3, 50, 0.001)
@@ -178,6 +177,5 @@ def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
     if 4 * len(own) < _LEAST_POINTS:
         return None
     indices = 4 * np.repeat(own, 4) + np.tile(np.arange(4), len(own))
-    pixels = np.concatenate([found[each] for each in own]).astype(np.float32)
-    refined = cv2.cornerSubPix(gray, pixels.reshape(-1, 1, 2), _WINDOW, (-1, -1), _ENDS)
-    return Seen(indices.astype(np.intp), np.asarray(refined, dtype=float).reshape(-1, 2))
+    pixels = tag_edges.refined(gray, np.array([found[each] for each in own], dtype=float))
+    return Seen(indices.astype(np.intp), pixels.reshape(-1, 2))

@@ -223,7 +223,9 @@ def _deviations(jacobians: list[Array], residuals: list[Array]) -> Array:
         square += lens.T @ lens - mixed @ np.linalg.pinv(pose.T @ pose) @ mixed.T
     values = np.concatenate([each.ravel() for each in residuals])
     freedom = max(1, len(values) - size - 6 * len(jacobians))
-    variances = np.diag(np.linalg.pinv(square)) * (values @ values) / freedom
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(square), 1e-30))
+    scaled = square * np.outer(scale, scale) + 1e-12 * np.eye(size)  # coefficients may be alike
+    variances = scale**2 * np.diag(np.linalg.inv(scaled)) * (values @ values) / freedom
     return np.asarray(np.sqrt(np.maximum(variances, 0.0)))
 
 
