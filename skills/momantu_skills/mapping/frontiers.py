@@ -166,7 +166,8 @@ def _prospect(
 ) -> tuple[Prospect | None, NDArray[np.bool_]]:
     """The best look at a frontier cell, and the floor that it shows; None: none shows enough."""
     x, y = grid.centre(*cell)
-    best, shown = None, np.zeros(grid.cells.shape, dtype=np.bool_)
+    best: Prospect | None = None
+    shown: NDArray[np.bool_] = np.zeros(grid.cells.shape, dtype=np.bool_)
     for reach in (FAR, NEAR, BESIDE) if far else (NEAR, BESIDE):
         at = _view(grid.cells, views, *cell, reach / grid.resolution, float(UNREACHED))
         if at[0] < 0:
