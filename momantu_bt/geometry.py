@@ -63,6 +63,13 @@ def quaternion_from_matrix(rotation: ArrayLike) -> Array:
     return array if array[0] >= 0 else -array
 
 
+def rotation_between(start: Array, end: Array) -> Array:
+    """The smallest rotation (3, 3) from one unit vector (3,) to another that is not opposite."""
+    axis, cosine = np.cross(start, end), float(start @ end)
+    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + cosine))
+
+
 def quaternion_from_axis_angle(axis: ArrayLike, angle: float) -> Array:
     """Unit quaternion of a rotation by `angle` rad about `axis` (3,) of any length but 0."""
     unit = np.asarray(axis, dtype=np.float64)

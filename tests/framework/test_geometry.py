@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from momantu_bt.geometry import (
@@ -14,6 +14,7 @@ from momantu_bt.geometry import (
     quaternion_from_axis_angle,
     quaternion_from_matrix,
     quaternion_from_rpy,
+    rotation_between,
     wrap_angle,
 )
 
@@ -74,6 +75,18 @@ def test_rpy_is_yaw_after_pitch_after_roll(roll: float, pitch: float, yaw: float
 def test_half_turns_survive_the_matrix(axis: tuple[float, float, float]) -> None:
     rotation = matrix_from_quaternion(quaternion_from_axis_angle(axis, math.pi))
     assert np.allclose(matrix_from_quaternion(quaternion_from_matrix(rotation)), rotation)
+
+
+@given(unit, unit)
+def test_the_rotation_between_two_vectors_is_the_smallest_one(
+    a: tuple[float, ...], b: tuple[float, ...]
+) -> None:
+    start, end = (Transform(quaternion=q).rotation[:, 0] for q in (a, b))
+    assume(float(start @ end) > -0.99)
+    rotation = rotation_between(start, end)
+    assert np.allclose(rotation @ start, end, atol=1e-9)
+    assert np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9)
+    assert (np.trace(rotation) - 1) / 2 == pytest.approx(float(start @ end), abs=1e-9)
 
 
 @given(angle)

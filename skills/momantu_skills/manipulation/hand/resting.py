@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from momantu_bt.geometry import Array, Pose, Transform
+from momantu_bt.geometry import Array, Pose, Transform, rotation_between
 from momantu_bt.messages import DetectedObject
 
 LYING = math.sin(math.radians(45.0))
@@ -39,10 +39,10 @@ def levelled(rotation: Array) -> Array:
     index = int(np.argmax(np.abs(rotation[2])))
     if index == 2:
         goal = np.array([0.0, 0.0, math.copysign(1.0, rotation[2, 2])])
-        return _turned(rotation[:, 2], goal) @ rotation
+        return rotation_between(rotation[:, 2], goal) @ rotation
     axis = rotation[:, 2]
     flat = np.array([axis[0], axis[1], 0.0])
-    return _turned(axis, flat / np.linalg.norm(flat)) @ rotation
+    return rotation_between(axis, flat / np.linalg.norm(flat)) @ rotation
 
 
 def put_right(thing: DetectedObject) -> DetectedObject:
@@ -69,7 +69,7 @@ def held_level(grasp_from_object: Transform) -> Transform:
     """
     axis = grasp_from_object.rotation[:, 2]
     along = np.array([axis[0], 0.0, axis[2]])
-    rotation = _turned(axis, along / np.linalg.norm(along)) @ grasp_from_object.rotation
+    rotation = rotation_between(axis, along / np.linalg.norm(along)) @ grasp_from_object.rotation
     return Transform.from_rotation(rotation, grasp_from_object.position)
 
 
@@ -83,10 +83,3 @@ def _renamed(thing: DetectedObject, pose: Transform) -> DetectedObject:
     x, y, z = (thing.size[i] for i in order)
     turned = Pose(Transform.from_rotation(axes, pose.position), thing.pose.frame, thing.pose.stamp)
     return replace(thing, pose=turned, size=(x, y, z))
-
-
-def _turned(start: Array, end: Array) -> Array:
-    """The smallest rotation (3, 3) from one unit vector to another that is not opposite."""
-    axis, cosine = np.cross(start, end), float(start @ end)
-    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + cosine))

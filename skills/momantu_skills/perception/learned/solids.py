@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.categories import USUAL, Symmetry
-from momantu_bt.geometry import Array, Transform
+from momantu_bt.geometry import Array, Transform, rotation_between
 from momantu_skills.perception.learned.similarity import fit
 
 TOLERANCE = 0.012
@@ -115,15 +115,8 @@ def _straightened(rotation: Array, symmetry: Symmetry) -> Array:
     axis = rotation[:, best]
     tilt = math.acos(min(1.0, abs(float(axis[2]))))
     if tilt < STRAIGHT:
-        return turned(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
+        return rotation_between(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
     if symmetry is Symmetry.ENDS and tilt > math.pi / 2 - STRAIGHT:
         flat = np.array([axis[0], axis[1], 0.0])
-        return turned(axis, flat / np.linalg.norm(flat)) @ rotation
+        return rotation_between(axis, flat / np.linalg.norm(flat)) @ rotation
     return rotation
-
-
-def turned(start: Array, end: Array) -> Array:
-    """The smallest rotation (3, 3) from one unit vector to another that is not opposite."""
-    axis, cosine = np.cross(start, end), float(start @ end)
-    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
-    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + cosine))
