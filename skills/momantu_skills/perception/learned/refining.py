@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.categories import Symmetry
-from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle, rotation_between
 from momantu_skills.perception.geometry.rectangles import fitted_to, smallest_rectangle
 from momantu_skills.perception.geometry.revolution import fit_revolution
-from momantu_skills.perception.learned.solids import Solid, turned
+from momantu_skills.perception.learned.solids import Solid
 
 MARGIN = 0.015
 """How far outside the box that the coordinates give a thing's points may lie, m."""
@@ -123,7 +123,7 @@ def _aligned(thing: Solid, seen: Seen) -> Solid:
     found = directions[:, 0] * math.copysign(1.0, float(directions[:, 0] @ axis))
     if spread[0] > NARROW * spread[1] or float(found @ axis) < ALIGNED:
         return thing
-    rotation = turned(axis, found) @ frame.rotation
+    rotation = rotation_between(axis, found) @ frame.rotation
     return replace(thing, frame_from_object=Transform.from_rotation(rotation, frame.position))
 
 
