@@ -3,8 +3,8 @@
     python benchmarks/contact_force.py
 
 A joint of Fetch's arm swings the rest of it at a hard wall, as slowly and as fast as motions are.
-Once the motors are watched (`momantu_skills/manipulation/motion/strain.py`), once the arm presses
-on until its trajectory ends. The largest force is that of the blow, which no watching makes less;
+Once the motors are watched (`momantu_skills/manipulation/motion/strain.py`, which feels only in
+slow motions), once the arm presses on until its trajectory ends. The largest force is that of the blow, which no watching makes less;
 the lasting one is that of every 0.25 s, at the least.
 """
 
@@ -85,12 +85,12 @@ def pushed(
 
 
 def _measured(simulator: Simulator, trajectory: JointTrajectory, *, watched: bool) -> Force:
-    strain = Strain(arm_model(fetch()).efforts, fast=not slow(trajectory))
+    strain = Strain(arm_model(fetch()).efforts)
     forces, stopped = [0.0] * LASTING, False
     for _ in range(int(trajectory.duration / TICK) + AFTER):
         robot = simulator.robot
         felt = strain.felt(efforts_of(robot, trajectory.names))
-        if watched and not stopped and felt is not None:
+        if watched and not stopped and slow(trajectory) and felt is not None:
             robot.stop("arm")
             stopped = True
         if not stopped:

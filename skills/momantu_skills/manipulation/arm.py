@@ -220,11 +220,11 @@ class Arm:
     ) -> Generator[str, None, bool]:
         """See `motion.follow`. An arm that meets something goes back a little before it fails.
 
-        What it met is an obstacle from now on, until a picture shows that nothing is there. The
-        motors are watched too, unless a contact is meant (`until`).
+        What it met is an obstacle from now on, until a picture shows that nothing is there. Slow
+        motions watch the motors too, unless a contact is meant (`until`).
         """
-        efforts, fast = self.scene.model.efforts, not slow(trajectory)
-        strain = Strain(efforts, fast=fast) if until is None else None
+        feels = until is None and slow(trajectory)
+        strain = Strain(self.scene.model.efforts) if feels else None
         clock = self.skill.clock
         try:
             return (yield from follow(self.robot, clock, ARM, trajectory, phase, until, strain))

@@ -1,10 +1,10 @@
 """Feeling in the motors' efforts that an arm pushes against something.
 
 A motor that is stopped gives more and more, up to its limit, long before the arm lags behind much.
-What it gives for weight changes slowly, and what counts is a rise. Where the arm goes slowly, what
-it gives for acceleration is small. In fast motions it is more, and what the hand holds pulls at the
-light joints near it with more than half of their limits: there the strong joints tell, which carry
-the arm.
+Where the arm goes slowly, because something may stand there, what it gives for weight changes
+slowly and what it gives for acceleration is small; what counts is a rise. In fast motions joints
+rise by half of their limits with nothing in their way, light ones in every third run and strong
+ones in every thirtieth: there this tells nothing.
 """
 
 from __future__ import annotations
@@ -27,13 +27,8 @@ RECENT = 10
 LASTING = 2
 """Ticks for which a rise must last: a start or stop jerks for one."""
 LEAST = 10.0
-"""Least rise that counts in a slow motion, Nm or N: several times a motor's friction and noise. So
-wrist joints, which move only the hand, seldom tell."""
-LEAST_FAST = 20.0
-"""The same in a fast motion: twice what the strong joints of two arms rise by with a load of 0.35
-kg (10 Nm or N; 3 to 15 % of their limits)."""
-STRONG = 0.6
-"""Share of a joint's limit above which `LEAST_FAST` is too much for it to tell in a fast motion."""
+"""Least rise that counts, Nm or N: several times a motor's friction and noise. So wrist joints,
+which move only the hand, seldom tell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +49,12 @@ class Strain:
     """Watches the efforts of one arm during one motion.
 
     limits: (n,) largest effort of each joint, Nm or N; infinite or 0 where it is not known: such a
-    joint tells nothing. fast: the motion is not slow, and only strong joints tell.
+    joint tells nothing.
     """
 
-    def __init__(self, limits: Array, *, fast: bool = False) -> None:
-        telling = np.isfinite(limits) & (limits > (LEAST_FAST / STRONG if fast else 0.0))
-        least = LEAST_FAST if fast else LEAST
-        self._most = np.where(telling, np.maximum(SHARE * limits, least), np.inf)
+    def __init__(self, limits: Array) -> None:
+        known = np.isfinite(limits) & (limits > 0.0)
+        self._most = np.where(known, np.maximum(SHARE * limits, LEAST), np.inf)
         self._recent: deque[Array] = deque(maxlen=RECENT)
         self._lasting = np.zeros(len(limits), dtype=np.int64)
 
