@@ -4,8 +4,8 @@
 
 A joint of Fetch's arm swings the rest of it at a hard wall, as slowly and as fast as motions are.
 Once the motors are watched (`momantu_skills/manipulation/motion/strain.py`, which feels only in
-slow motions), once the arm presses on until its trajectory ends. The largest force is that of the blow, which no watching makes less;
-the lasting one is that of every 0.25 s, at the least.
+slow motions), once the arm presses on until its trajectory ends. The largest force is that of the
+blow, which no watching makes less; the lasting one is the least within 0.25 s, at its largest.
 """
 
 from __future__ import annotations
