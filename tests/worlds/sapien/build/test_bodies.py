@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -17,7 +19,8 @@ from momantu_worlds.scenes.geometry.bodies import Body, Box, Cylinder, Geometry,
 from momantu_worlds.testing import plain_episode
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
-from momantu_bt.robot import Cuts
+from momantu_bt.messages import BaseVelocity
+from momantu_bt.robot import Cuts, RobotDescription
 
 FETCH = fetch()
 CORNERS = np.array([[x, y, z] for x in (0, 0.1) for y in (0, 0.2) for z in (0, 0.3)], dtype=float)
@@ -128,3 +131,21 @@ def test_links_that_are_fixed_to_each_other_never_push() -> None:
         ("arm_finger_tip_2", "arm_link_6"),
     ):
         assert not groups[one] & groups[other]
+
+
+@pytest.mark.parametrize(("robot", "top"), [(fetch, 0.005), (fetch, 0.03), (kinova_jackal, 0.005)])
+def test_the_base_rolls_over_a_slab_of_a_floor(
+    robot: Callable[[], RobotDescription], top: float
+) -> None:
+    """A floor of an imported world may lie a little above the plane, with friction."""
+    slab = Body("slab", "body", Transform(), (Part(Box((6.0, 6.0, 2 * top))),), friction=1.0)
+    episode = plain_episode(table=False)
+    episode = dataclasses.replace(episode, bodies=(*episode.bodies, slab))
+    simulator = Simulator(robot(), episode, 0, render=False)
+    try:
+        for _ in range(30):
+            simulator.robot.command("base", BaseVelocity(0.5, 0.0))
+            simulator.step()
+        assert simulator.truth.base().x > 0.4
+    finally:
+        simulator.close()

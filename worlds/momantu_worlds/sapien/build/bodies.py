@@ -11,16 +11,19 @@ import sapien
 from momantu_bt.geometry import Array
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT
 from momantu_worlds.sapien.build.collision_shapes import collision_shapes
-from momantu_worlds.sapien.build.meshes import body_mesh, map_triangles, volume
+from momantu_worlds.sapien.build.meshes import body_mesh, collision_mesh, map_triangles, volume
 from momantu_worlds.sapien.build.moving import MovingBody
 from momantu_worlds.sapien.build.render_shapes import render_shape
 from momantu_worlds.sapien.build.truth import Truth
 from momantu_worlds.sapien.poses import Z_FROM_X, pose_for_sapien, pose_of
-from momantu_worlds.scenes.geometry.bodies import Body, Episode
+from momantu_worlds.scenes.geometry.bodies import Body, Episode, Part
 
 FLOOR = "floor"
 """Category of bodies that the robot's base rolls on, and the name of the plane at z = 0."""
 FLOOR_FRICTION = 0.8
+ROLLED_OVER = 0.03
+"""Height above the floor, m, up to which the base rolls over what is fixed, such as a slab of an
+imported floor: without wheels that turn, its friction would hold the base."""
 
 
 def add_bodies(
@@ -116,10 +119,19 @@ def _physics(body: Body) -> Any:
     colliding = [part for part in body.parts if part.collision]
     total = 0.0 if body.static else sum(volume(part.geometry) for part in colliding)
     for part in colliding:
+        floor = body.category == FLOOR or (fixed and _top(body, part) <= ROLLED_OVER)
         for shape in collision_shapes(part, material, static=body.static):
-            shape.set_collision_groups([1, 1, FLOOR_BIT if body.category == FLOOR else 0, 0])
+            shape.set_collision_groups([1, 1, FLOOR_BIT if floor else 0, 0])
             if not body.static:
                 shape.set_density(body.mass / total)
             component.attach(shape)
     component.name = body.name
     return component
+
+
+def _top(body: Body, part: Part) -> float:
+    """Height of the highest point of a part, m."""
+    corners = (body.map_from_body @ part.body_from_part).apply(
+        collision_mesh(part.geometry).vertices
+    )
+    return float(corners[:, 2].max())
