@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, Protocol
 
 from momantu_bt.errors import MomantuError
@@ -13,19 +12,12 @@ from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.plugins import Group, PluginError
 from momantu_bt.service import Snapshot
 
-DETECTOR_FAILURES: Mapping[str, str] = MappingProxyType(
-    {
-        "WEIGHTS_BROKEN": "the detector's weights cannot be read",
-        "WEIGHTS_FOREIGN": "the file for the detector's weights holds something else",
-        "WEIGHTS_OUTDATED": "the detector's weights are of another version",
-        "CATEGORY_UNKNOWN": "the detector's weights do not know the category that is asked for",
-    }
-)
-"""Why a detector cannot look: code -> what it means."""
-
 
 class DetectorError(MomantuError):
-    """A detector cannot look, whatever the picture shows. code: one of DETECTOR_FAILURES."""
+    """A detector fails, whatever the picture shows.
+
+    code: what the skill that asks it fails with; it must be one that this skill declares.
+    """
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)

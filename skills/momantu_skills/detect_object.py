@@ -9,7 +9,6 @@ from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, ObjectAt, ObjectOn
 from momantu_bt.descriptions.tunables import configured
 from momantu_bt.detector import (
-    DETECTOR_FAILURES,
     DETECTORS,
     DetectorError,
     ObjectDetector,
@@ -60,7 +59,10 @@ class DetectObject(Skill):
     failures = {
         "OBJECT_NOT_FOUND": "no object on the surface is the requested one; data lists those found",
         "SURFACE_NOT_SEEN": "no picture showed a level surface where the site has one",
-        **DETECTOR_FAILURES,
+        "WEIGHTS_BROKEN": "the detector's weights cannot be read",
+        "WEIGHTS_FOREIGN": "the file for the detector's weights holds something else",
+        "WEIGHTS_OUTDATED": "the detector's weights are of another version",
+        "CATEGORY_UNKNOWN": "the detector's weights do not know the category that is asked for",
     }
     uses = {CAMERA_CARRIER}
     senses = {"camera"}

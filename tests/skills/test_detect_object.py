@@ -11,6 +11,7 @@ import pytest
 from momantu_skills.detect_object import DetectObject
 
 from momantu_bt.claim import ObjectAt, ObjectOn
+from momantu_bt.detector import DETECTORS, DetectorError
 from momantu_bt.geometry import Pose2D, Transform, quaternion_from_rpy
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
@@ -176,3 +177,21 @@ def test_what_is_found_is_claimed_to_stand_there_as_asked(detect: Detect) -> Non
 def test_what_is_not_found_would_be_a_false_alarm_if_it_stood_there(detect: Detect) -> None:
     assert detect([BOX]).claim() == ObjectOn(CAN, "table")
     assert detect([], table=()).claim() is None
+
+
+@pytest.mark.parametrize(
+    "code", ["WEIGHTS_BROKEN", "WEIGHTS_FOREIGN", "WEIGHTS_OUTDATED", "CATEGORY_UNKNOWN"]
+)
+def test_a_detector_that_cannot_look_ends_the_search_with_its_code(
+    detect: Callable[..., SkillResult], monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    class Blind:
+        budget, accepted = 0.1, 1.0
+
+        def detect(self, *_: Any) -> None:
+            raise DetectorError(code, "the file weights.safetensors is of no use")
+
+    monkeypatch.setattr(DETECTORS, "load", lambda _: Blind)
+    result = detect([can(0.95, 0.1)])
+    assert result.code == code
+    assert "weights.safetensors" in result.explain()

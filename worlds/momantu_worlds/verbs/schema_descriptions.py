@@ -96,6 +96,7 @@ DESCRIPTIONS: Mapping[str, str] = MappingProxyType(
         "Item.kind": "What it is.",
         "Item.on": "The surface that it stands on.",
         "Item.at": "[x, y] on the surface, in the surface's own frame.",
+        "Item.lying": "It lies on its side, its top towards `yaw`: a bottle or a can.",
         "Item.yaw": "How it is turned on the surface.",
         "Light.ambient": "[least, most] light from everywhere.",
         "Light.sun": "[least, most] strength of the sun; its direction varies too.",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from momantu_worlds.sapien.faults.rows import prepare
 from momantu_worlds.sapien.faults.tops import item_top
-from momantu_worlds.scenes.referee.referee import tilt
+from momantu_worlds.scenes.referee.demand import tilt
 
 from momantu_bt.fault import FaultError
 from momantu_bt.messages import GripperCommand
