@@ -30,7 +30,8 @@ from momantu_bt.service import HeldObject
 TABLE = 0.7
 MODELS = (arm_model(fetch()), arm_model(kinova_jackal()))
 YAWS = st.floats(-math.pi, math.pi)
-ROUND = st.tuples(st.floats(0.052, 0.08), st.floats(0.11, 0.26))
+ROUND = st.tuples(st.floats(0.056, 0.08), st.floats(0.11, 0.26))
+"""Diameters, m, from the least on that fingers take from a surface, and lengths, m."""
 
 
 def lying(
