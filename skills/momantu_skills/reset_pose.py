@@ -13,7 +13,7 @@ from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
 from momantu_bt.messages import JointPositions, JointTrajectory
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
-from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+from momantu_bt.skill import Compute, In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
@@ -71,10 +71,8 @@ class ResetPose(Skill):
     def _way(
         self, arm: Arm, goal: Array
     ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
-        """Plan the path to the pose; with a held object, only through space that the camera saw."""
+        """Plan the path to the pose, and look first at parts of it that no picture has shown."""
         held = self.planning_scene.held
-        if held is None:
-            return (yield from compute(lambda: arm.route([goal], held), THINKING))
         return (
             yield from unseen_ways.planned_in_sight(
                 arm, lambda: arm.route([goal], held), lambda way: way, THINKING
