@@ -29,8 +29,7 @@ from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from momantu_skills.gaze import surveys
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import surveys, tucking
     from momantu_skills.mapping import coverage, frontiers, sightings, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import route, trip, vehicle

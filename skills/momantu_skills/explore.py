@@ -24,7 +24,7 @@ from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import tucking
     from momantu_skills.mapping import frontiers, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import moves, route, trip, vehicle
