@@ -115,7 +115,7 @@ class DiscoverSurface(Skill):
         given = self.site.services.get("navigate", {})
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
-        base.unknown_cost = math.inf
+        base.caution.unknown_cost = math.inf
         controller = mppi.Mppi(robot.description.base, config, self.random)
         while True:
             seen = notes.nearest(base.pose(), self.site.surfaces.values(), self._fits)

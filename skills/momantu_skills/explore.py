@@ -108,7 +108,7 @@ class Explore(Skill):
         given = self.site.services.get("navigate", {})
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
-        base.unknown_cost = math.inf
+        base.caution.unknown_cost = math.inf
         controller = mppi.Mppi(robot.description.base, config, self.random)
         watch = watching.Watch(self, robot, self.mapping, self.planning_scene)
         return _Tour(base, controller, self.mapping, watch)
