@@ -30,7 +30,7 @@ encoders have an error."""
 class ResetPose(Skill):
     """Move the arm to a named pose around obstacles. A held object stays in the hand.
 
-    The camera looks first at parts of the way that no picture has shown.
+    The camera looks first where the way leads over a surface that no picture has shown.
     A pose that names only some joints moves only those. Fails with UNKNOWN_POSE, NO_PLAN,
     START_IN_COLLISION or ARM_STUCK.
     """

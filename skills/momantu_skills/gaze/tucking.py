@@ -24,7 +24,8 @@ NO_WAY = ("NO_PLAN", "START_IN_COLLISION")
 def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
     """Fold an arm that extends beyond the base into `home`, or `carry` if it holds an object.
 
-    It looks first at parts of its way that no picture has shown; the skill uses CAMERA_CARRIER.
+    It looks first where its way leads over a surface that no picture has shown; the skill uses
+    CAMERA_CARRIER.
     Where it finds no way, the base drives with the arm as it is: that may be what gives it room.
 
     Raises:

@@ -35,6 +35,8 @@ STAYED = 0.02
 """Largest motion of the arm since planning after which a plan is still valid, rad or m."""
 ALONG = 3
 """Number of unseen points on the hand's path that justify a view: one may be noise."""
+OVER = 1
+"""The same for a path of which only what is over surfaces counts, which is seldom unseen."""
 
 
 P = TypeVar("P")
@@ -45,15 +47,18 @@ def planned_in_sight(
     plan: Callable[[], P],
     way: Callable[[P], Sequence[JointTrajectory]],
     thinking: float,
+    *,
+    walls: bool = True,
 ) -> Generator[str | Compute, Any, P]:
     """A plan whose unseen parts were looked at, as far as the camera can be turned.
 
-    way: returns a plan's trajectories, in order. thinking: time allowed for one planning, s. A
-    camera on the hand is moved to where it sees the path, and the plan begins there.
+    way: returns a plan's trajectories, in order. thinking: time allowed for one planning, s. walls:
+    see `blind_spot`. A camera on the hand is moved to where it sees the path, and the plan begins
+    there.
     """
     made: P = yield from compute(plan, thinking)
     for _ in range(FURTHER):
-        doubtful = blind_spot(arm, way(made))
+        doubtful = blind_spot(arm, way(made), walls=walls)
         if doubtful is None:
             break
         start, seen = arm.joints, True
@@ -78,19 +83,29 @@ def routed_in_sight(
 ) -> Generator[str | Compute, Any, list[JointTrajectory]]:
     """A way to a posture (n,) with what the hand holds, as in `planned_in_sight`.
 
+    An empty hand looks only where something may stand on a surface: a load is wider than the hand,
+    and its arm goes the usual ways beside furniture.
+
     Raises:
         Failure: NO_PLAN or START_IN_COLLISION.
     """
     held = arm.service.held
     return (
-        yield from planned_in_sight(arm, lambda: arm.route([goal], held), lambda way: way, thinking)
+        yield from planned_in_sight(
+            arm,
+            lambda: arm.route([goal], held),
+            lambda way: way,
+            thinking,
+            walls=held is not None,
+        )
     )
 
 
-def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
+def blind_spot(arm: Arm, transit: Sequence[JointTrajectory], *, walls: bool = True) -> Array | None:
     """The middle (3,), in odom, of an unseen part of the path over surfaces or near obstacles.
 
-    None if there is no such part.
+    None if there is no such part. walls: also beside what the map knows, where furniture may have
+    been moved; else only where something on a surface may be knocked over.
     """
     points = _hand_along(arm, transit)
     inner, low = np.zeros((2, len(points)), dtype=np.bool_)
@@ -98,9 +113,12 @@ def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
         above = points[:, 2] - support.height
         inner |= within(points[:, :2], support.outline, -BESIDE) & (above > 0.0)
         low |= within(points[:, :2], support.outline) & (above > 0.0) & (above < TALL)
-    beside = ~inner & (arm.service.floor_plan.distance(points) < BESIDE)
-    doubtful = points[(low | beside) & ~arm.scene.seen_space.show(points)]
-    return None if len(doubtful) < ALONG else np.asarray(doubtful[len(doubtful) // 2])
+    least = OVER
+    if walls:
+        low |= ~inner & (arm.service.floor_plan.distance(points) < BESIDE)
+        least = ALONG
+    doubtful = points[low & ~arm.scene.seen_space.show(points)]
+    return None if len(doubtful) < least else np.asarray(doubtful[len(doubtful) // 2])
 
 
 def _hand_along(arm: Arm, transit: Sequence[JointTrajectory]) -> Array:
