@@ -92,8 +92,8 @@ def between_wheels(robot: RobotDescription) -> float:
             sides.append(float(pose.position[1]))
     if sides and max(sides) - min(sides) > 0.05:
         return max(sides) - min(sides)
-    across = [y for _, y in robot.footprint]
-    return max(across) - min(across)
+    width = [y for _, y in robot.footprint]
+    return max(width) - min(width)
 
 
 def within_limits(robot: RobotDescription, goal: BaseVelocity, asked: BaseVelocity) -> BaseVelocity:
