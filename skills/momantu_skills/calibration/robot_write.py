@@ -17,7 +17,7 @@ from momantu_skills.calibration.robot.parameters import mounted
 from momantu_skills.calibration.robot_text import zeros
 
 _SECTION = re.compile(r"^calibration:.*\n(?:(?:[ \t#].*)?\n)*", re.MULTILINE)
-_HEAD = "# What `momantu-bt calibrate robot` found: rad and m.\n"
+_HEAD = "# What `momantu-bt calibrate robot` found: rad, m, and factors minus one.\n"
 
 
 def refuse_wrong(path: Path, description: RobotDescription) -> None:
