@@ -33,6 +33,7 @@ from momantu_bt.robot_parts import (
     Part,
     PlanningGroup,
     Sensor,
+    WheelCorrection,
     Working,
     WristWrench,
 )
@@ -72,6 +73,7 @@ __all__ = [
     "Sensor",
     "SensorReading",
     "SimulationModel",
+    "WheelCorrection",
     "Working",
     "WristWrench",
     "laser_band",
@@ -130,6 +132,8 @@ class RobotDescription(Part):
     """Joint positions by name, rad or m. A robot with an arm has REQUIRED_POSES."""
     ignored_collisions: tuple[tuple[str, str], ...] = ()
     """Pairs of links that collision checks ignore."""
+    wheels: WheelCorrection | None = None
+    """What a calibration found of the base's wheels; None: they are as its driver believes."""
     simulation: SimulationModel | None = None
     """None: the robot cannot be simulated."""
 

@@ -30,6 +30,7 @@ from momantu_bt.geometry import Pose2D
 
 Count: TypeAlias = Annotated[int, Field(gt=0, le=100_000)]
 Range: TypeAlias = Annotated[Length, Field(ge=0)]
+Correction: TypeAlias = Annotated[float, Field(ge=-0.5, le=0.5)]
 
 
 class Part(BaseModel):
@@ -334,6 +335,19 @@ class BaseLimits(Part):
         if self.kind is not BaseKind.OMNIDIRECTIONAL:
             return 0.0
         return self.linear if self.lateral is None else self.lateral
+
+
+class WheelCorrection(Part):
+    """How a base's wheels differ from what its driver believes: factors minus one."""
+
+    radius: Correction = 0.0
+    """Of both wheels, the mean."""
+    track: Correction = 0.0
+    """Of the distance between them."""
+    left_to_right: Correction = 0.0
+    """How much larger the right wheel is than the left one."""
+    between: Size
+    """The distance between the wheels as the driver believes it."""
 
 
 class Working(Part):

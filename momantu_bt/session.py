@@ -137,7 +137,9 @@ class Session:
     @property
     def robot(self) -> Robot:
         """The robot's driver. Its `description` lists actuators, sensors and named poses."""
-        return self._world().robot
+        self._world()
+        assert self._stage.robot is not None  # it has one where it has a world
+        return self._stage.robot
 
     def state(self) -> RobotState:
         """The robot's joints, odometry and gripper, as measured now."""

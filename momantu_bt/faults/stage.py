@@ -31,6 +31,7 @@ from momantu_bt.robot import Robot
 from momantu_bt.skill import Skill
 from momantu_bt.tree.model import Document
 from momantu_bt.tree.substitute.substitution import Substitution
+from momantu_bt.wheels import corrected_base
 from momantu_bt.world import Site, World
 
 
@@ -103,6 +104,8 @@ class Stage:
         self.site = site
         for one in planned:
             self._effects.append(self._effect(one, world, seed, stack))
+        if self.robot is not None:
+            self.robot = corrected_base(self.robot)
 
     def skill(self, kind: type[Skill]) -> type[Skill]:
         """A skill's class as the run uses it."""

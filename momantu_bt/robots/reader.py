@@ -83,6 +83,7 @@ def _description(
         end_effector=robot.end_effector,
         named_poses=robot.named_poses,
         ignored_collisions=robot.ignored_collisions,
+        wheels=robot.calibration.wheels,
         simulation=_simulation(robot, assembled),
     )
 

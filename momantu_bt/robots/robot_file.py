@@ -15,6 +15,7 @@ from momantu_bt.robot_parts import (
     Part,
     PlanningGroup,
     Sensor,
+    WheelCorrection,
     Working,
 )
 from momantu_bt.robot_simulation import BaseJoints, Contacts, JointGains, Strength
@@ -124,6 +125,8 @@ class Calibration(Part):
     """What is added to the position that a joint reports."""
     cameras: dict[str, CameraCorrection] = {}
     """How far each camera is off, by the sensor's name."""
+    wheels: WheelCorrection | None = None
+    """How the base's wheels differ from what its driver believes."""
 
 
 class RobotFile(Part):

@@ -12,7 +12,7 @@ import pytest
 from momantu_bt import run
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Pose, Transform
-from momantu_bt.messages import DetectedObject, SupportPlane
+from momantu_bt.messages import DetectedObject, DetectedTag, SupportPlane
 from momantu_bt.record.report import Report
 from momantu_bt.robot import Robot
 from momantu_bt.skill import MISSING, Run, Skill
@@ -38,6 +38,13 @@ OUTPUTS: dict[str, Any] = {
     "enough": False,
     "plane": SupportPlane(POSE, ((-1, -1), (1, -1), (1, 1), (-1, 1))),
     "spots": (POSE,),
+    "tags": (
+        DetectedTag("", "tag36h11", (1,), (0.15,), POSE, (0.0,) * 36),
+        DetectedTag("", "tag36h11", (2,), (0.15,), POSE, (0.0,) * 36),
+    ),
+    "ids": (1, 2),
+    "error_code_id": 0,
+    "error_msg": "",
     "known": 50.0,
     "known_share": 100,
     "looked_share": 100,
@@ -368,6 +375,18 @@ def test_views_are_collected_and_one_without_a_tag_is_taken_again() -> None:
     assert report.status == "SUCCESS", report.failure
     assert len(script.names()) == 31
     assert set(script.given("record_view", "file")) == {"views.jsonl"}
+
+
+def test_a_robot_that_drives_looks_at_each_tag_that_it_sees_after_each_way() -> None:
+    script = Script()
+    assert go("calibrate_driving", script).status == "SUCCESS"
+    ways = [name for name in script.names() if name in ("Spin", "DriveOnHeading", "BackUp")]
+    assert ways == 3 * ["Spin", "DriveOnHeading", "Spin", "BackUp", "Spin"]
+    assert sum(script.given("Spin", "spin_dist")) == pytest.approx(0.0)
+    seen = len(OUTPUTS["tags"])
+    assert script.names().count("record_view") == (1 + len(ways)) * (1 + seen)
+    looked = [pose for pose in script.given("look", "at") if pose is not None]
+    assert looked == (1 + len(ways)) * [tag.pose for tag in OUTPUTS["tags"]]
 
 
 def test_a_robot_that_never_sees_a_tag_is_told() -> None:

@@ -209,6 +209,17 @@ BASE = (
         recoverable=True,
         symptoms=ASTRAY,
     ),
+    _base(
+        "base.wheel",
+        "One wheel is larger than believed: the base pulls to a side, and odometry misses it.",
+        number("factor", 1.02, None, "true radius over the believed one", 0.8, 1.25),
+        word("side", "left", "which wheel: left or right"),
+        lasting(inf),
+        begins=(),
+        notice=60.0,
+        recoverable=True,
+        symptoms=ASTRAY | UNSEEN,
+    ),
 )
 
 ARM_ROWS = (

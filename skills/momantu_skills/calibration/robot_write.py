@@ -8,15 +8,16 @@ from pathlib import Path
 from momantu_bt.errors import InputError
 from momantu_bt.formats.files import check_writable, write_whole
 from momantu_bt.geometry import Transform
-from momantu_bt.robot import RobotDescription
+from momantu_bt.robot import RobotDescription, WheelCorrection
 from momantu_bt.robots.reader import FILE, read_robot_file
 from momantu_bt.robots.robot_file import Calibration, CameraCorrection
+from momantu_bt.wheels import Wheels
 from momantu_skills.calibration.robot.estimate import Calibrated
 from momantu_skills.calibration.robot.parameters import mounted
 from momantu_skills.calibration.robot_text import zeros
 
 _SECTION = re.compile(r"^calibration:.*\n(?:(?:[ \t#].*)?\n)*", re.MULTILINE)
-_HEAD = "# What `momantu-bt calibrate robot` found: rad and m.\n"
+_HEAD = "# What `momantu-bt calibrate robot` found: rad, m, and factors minus one.\n"
 
 
 def refuse_wrong(path: Path, description: RobotDescription) -> None:
@@ -59,7 +60,22 @@ def combined(before: Calibration, found: Calibrated) -> Calibration:
     pose = Transform.from_rpy(old.xyz, old.rpy) @ mounted(mount)
     x, y, z = (float(value) for value in pose.position)
     correction = CameraCorrection(xyz=(x, y, z), rpy=pose.rpy)
-    return Calibration(joints=joints, cameras={**before.cameras, found.camera: correction})
+    cameras = {**before.cameras, found.camera: correction}
+    return Calibration(joints=joints, cameras=cameras, wheels=_wheels(before.wheels, found))
+
+
+def _wheels(before: WheelCorrection | None, found: Calibrated) -> WheelCorrection | None:
+    """The wheels' corrections on top of those that were there; those if the base did not drive."""
+    here = found.parameters.wheels
+    if not found.free[here].any():
+        return before
+    radius, track, larger = (float(value) for value in found.solution.state.told[here])
+    between = found.parameters.track
+    new = Wheels.of(
+        WheelCorrection(radius=radius, track=track, left_to_right=larger, between=between)
+    )
+    old = Wheels(0.0, 0.0, 0.0, between) if before is None else Wheels.of(before)
+    return old.then(new).correction()
 
 
 def _section(calibration: Calibration) -> str:
@@ -69,6 +85,9 @@ def _section(calibration: Calibration) -> str:
     for name, camera in calibration.cameras.items():
         xyz, rpy = (", ".join(f"{v:.6f}" for v in values) for values in (camera.xyz, camera.rpy))
         lines.append(f"    {name}: {{xyz: [{xyz}], rpy: [{rpy}]}}")
+    if calibration.wheels is not None:
+        told = (f"{key}: {value:.6f}" for key, value in calibration.wheels)
+        lines.append(f"  wheels: {{{', '.join(told)}}}")
     return "\n".join(lines) + "\n"
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from momantu_bt.geometry import Transform
+from momantu_bt.robot import WheelCorrection
 from momantu_bt.robots import RobotFileError, read_robot
 
 Write = Callable[..., Path]
@@ -44,9 +45,22 @@ def test_a_camera_is_moved_in_its_own_frame(carter: Write) -> None:
     assert there.matrix == pytest.approx(exact.matrix, abs=1e-6)
 
 
+def test_wheels_are_told_to_the_driver_and_change_no_link(carter: Write) -> None:
+    before = read_robot(carter())
+    assert before.wheels is None
+    text = "{wheels: {radius: 0.01, left_to_right: -0.02, between: 40 cm}}"
+    after = read_robot(with_calibration(carter, text))
+    assert after.wheels == WheelCorrection(radius=0.01, left_to_right=-0.02, between=0.4)
+    frame = before.hand.frame
+    there = after.kinematics().base_from_frame(frame, {}).matrix
+    assert there == pytest.approx(before.kinematics().base_from_frame(frame, {}).matrix, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("{wheels: {radius: 2.0, between: 0.4}}", "radius"),
+        ("{wheels: {radius: 0.01}}", "between"),
         ("{joints: {elbow: 0.1}}", "there is no joint 'elbow' that moves; "),
         ("{cameras: {eye: {xyz: [0, 0, 0]}}}", "there is no camera 'eye'; "),
         ("{joints: {elbow: nan}}", "calibration"),

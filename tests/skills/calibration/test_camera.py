@@ -197,6 +197,29 @@ def test_corners_of_tags_are_not_moved_by_blur() -> None:
         assert found == pytest.approx(true, abs=0.05)
 
 
+def test_corners_of_tags_whose_edges_a_lens_bends_are_found_where_it_is_told() -> None:
+    """Edges of 70 pixels that bulge by up to 1.5 pixels, painted sixteen times as large."""
+    corners = np.array([[40.0, 110.0], [110.0, 112.0], [108.0, 42.0], [42.0, 40.0]])
+    shares = np.linspace(0.0, 1.0, 60)[:-1, None]
+    for bulges in ((1.5, 1.0, 0.5, 1.0), (-1.0, 0.5, 0.0, -0.5)):
+        outline, middles = [], []
+        for k, bulge in enumerate(bulges):
+            start, end = corners[k], corners[(k + 1) % 4]
+            way = end - start
+            out = bulge * np.array([-way[1], way[0]]) / np.linalg.norm(way)
+            middles.append(0.5 * (start + end) + out)
+            outline.append(start + shares * way + 4.0 * shares * (1.0 - shares) * out)
+        large = np.full((2400, 2400), 230, np.uint8)
+        drawn = np.round(((np.concatenate(outline) + 0.5) * 16.0 - 0.5) * 16.0).astype(np.int32)
+        cv2.fillPoly(large, [drawn], 25, shift=4)
+        small = cv2.resize(large, (150, 150), interpolation=cv2.INTER_AREA)
+        gray = np.asarray(cv2.GaussianBlur(small, (0, 0), 0.7), dtype=np.uint8)
+        found = tag_edges.refined(gray, corners[None])
+        told = tag_edges.bent(corners[None], np.array(middles)[None])
+        assert np.abs(told).max() > 0.3
+        assert found - told == pytest.approx(corners[None], abs=0.08)
+
+
 def test_mirrored_pictures_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pictures = folder(tmp_path / "in", CHARUCO, 5)
     for file in pictures.iterdir():

@@ -7,16 +7,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.robot.estimate import Calibrated, Settings, calibrate
+from momantu_skills.calibration.robot.model import _composed
 from momantu_skills.calibration.robot.parameters import columns, mounted
 from momantu_skills.calibration.robot.rows import read_rows
 from momantu_skills.calibration.robot.telling import untold
 from momantu_skills.manipulation.model.batched import BatchedChain
 
 from momantu_bt.cli import main
-from momantu_bt.geometry import Array
+from momantu_bt.geometry import Array, Pose2D
+from momantu_bt.robot import WheelCorrection
 from momantu_bt.robots.plugins import load_robot
+from momantu_bt.wheels import Wheels
 from tests.skills.scenery.bent import HAND_TAG, Bent, Measuring, write
 
 FETCH = load_robot("fetch")
@@ -160,6 +164,34 @@ def test_a_calibration_is_written_into_a_robot_file_and_is_believed(tmp_path: Pa
     text = file.read_text(encoding="utf-8")
     assert text.count("\ncalibration:") == 1
     assert "# Rubber pads" in text
+
+
+def test_wheels_are_written_and_those_of_a_base_that_stood_are_kept(tmp_path: Path) -> None:
+    file, bent = tmp_path / "robot.yaml", Bent(wheels=(1.02, 1.0))
+    assert FETCH.source is not None
+    file.write_text(FETCH.source.read_text(encoding="utf-8"), encoding="utf-8")
+    for stands in (24, 1):
+        measuring = Measuring(FETCH, bent, seed=2, stands=stands)
+        views = write(tmp_path / "views.jsonl", measuring.rows(48))
+        command = ["calibrate", "robot", str(views), "--robot", str(file)]
+        assert main([*command, "--write", str(file)]) == 0
+        wheels = load_robot(str(file)).wheels
+        assert wheels is not None
+        assert wheels.between == pytest.approx(bent.track, abs=1e-3)
+        assert wheels.left_to_right == pytest.approx(-0.02, abs=0.006)
+        assert wheels.radius == pytest.approx(0.01, abs=0.02)
+
+
+def test_the_model_of_wheels_is_that_of_the_corrected_base() -> None:
+    random = np.random.default_rng(0)
+    for _ in range(20):
+        radius, track, larger = random.uniform(-0.05, 0.05, 3)
+        told = random.uniform(-0.3, 0.3, 3)
+        correction = WheelCorrection(radius=radius, track=track, left_to_right=larger, between=0.4)
+        step = Wheels.of(correction).true_step(Pose2D(*told))
+        wheels = torch.tensor([[radius, track, larger]])
+        composed = _composed(torch.tensor(told[None, None]), wheels, 0.4)[0]
+        assert composed.tolist() == pytest.approx([step.x, step.y, step.yaw], abs=1e-9)
 
 
 ROW = {

@@ -39,8 +39,18 @@ class Measuring:
     """Poses a bent robot before tags and writes down what it measures."""
 
     def __init__(
-        self, robot: RobotDescription, bent: Bent, seed: int, noise: float = 0.2, stands: int = 4
+        self,
+        robot: RobotDescription,
+        bent: Bent,
+        seed: int,
+        noise: float = 0.2,
+        stands: int = 4,
+        there_and_back: float | None = None,
     ) -> None:
+        """there_and_back: m from stand to stand, ahead and back in turn; None: 10 cm ahead.
+
+        The base turns by 0.6 rad on each such way, by 0.3 rad if it is None.
+        """
         self.robot, self.bent, self.noise = robot, bent, noise
         self.random = np.random.default_rng(seed)
         self.name, camera = robot.camera()
@@ -50,6 +60,7 @@ class Measuring:
         self.joints = tuple(dict.fromkeys([*self.camera.names, *self.hand.names]))
         self.hand_from_tag = Transform.from_rpy((0.02, 0.01, 0.05), (0.1, -0.4, 0.3)).matrix
         self.stands = stands
+        self.there_and_back = there_and_back
 
     def positions(self, count: int, base_from_tag: Array | None = None) -> Array:
         """Reported postures (count, J) in which the camera sees a tag (4, 4), else the hand's."""
@@ -102,8 +113,8 @@ class Measuring:
         each = -(-views // self.stands)
         for stand in range(self.stands):
             if stand:
+                way, turn = self._step(stand)
                 for _ in range(5):
-                    way, turn = 0.02, (0.06 if stand % 2 else -0.06)
                     true = true @ _planar(self._driven(way, turn))
                     told = _pose(_planar(told) @ _planar(_arc(way, turn)))
                     stamp = float(len(made))
@@ -111,6 +122,13 @@ class Measuring:
             for positions in self._postures(each, true, tags):
                 made.append(self._row(float(len(made)), positions, true, told, tags))
         return made
+
+    def _step(self, stand: int) -> tuple[float, float]:
+        """One of five steps of odometry to a stand: m ahead, rad."""
+        if self.there_and_back is None:
+            return 0.02, 0.06 if stand % 2 else -0.06
+        ahead, left = stand % 2, stand % 4 in (1, 2)
+        return 0.2 * self.there_and_back * (1 if ahead else -1), 0.12 if left else -0.12
 
     def _postures(self, count: int, true: Array, tags: dict[int, Array]) -> Array:
         """Postures at one stand: looking at the hand, or with a camera on the arm at the tags."""

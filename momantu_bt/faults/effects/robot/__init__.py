@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from momantu_bt.fault import Fault, FaultError
-from momantu_bt.faults.effects.robot import arm, base, camera, gripper, odometry, sensors
+from momantu_bt.faults.effects.robot import arm, base, camera, gripper, odometry, sensors, wheel
 from momantu_bt.faults.effects.robot.layer import Layer
 from momantu_bt.robot import Robot
 
@@ -29,6 +29,7 @@ LAYERS: Mapping[str, LayerType] = MappingProxyType(
         "base.stuck": base.Stuck,
         "base.slow": base.Slow,
         "base.offset": base.Offset,
+        "base.wheel": wheel.Larger,
         "arm.stuck": arm.Stuck,
         "arm.slow": arm.Slow,
         "arm.offset": arm.Offset,

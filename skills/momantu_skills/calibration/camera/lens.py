@@ -10,6 +10,7 @@ import numpy as np
 
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
+from momantu_skills.calibration.camera import tag_edges
 from momantu_skills.calibration.camera.board import Board, Seen
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.models import Model
@@ -27,7 +28,9 @@ _POINT = 5.0
 _LEAST_POINT = 0.3
 _MOST_POINTS = 0.25
 """So is a point, but if there are more than this share in a picture, they count: all may be off."""
-_ROUNDS = 4
+_ROUNDS = 6
+_STILL = 0.003
+"""px; corners of tags are found if they are moved by less."""
 
 
 ROS_MODEL = {
@@ -83,21 +86,49 @@ def fit(board: Board, seen: Sequence[Seen], size: tuple[int, int], model: Model)
     """
     used = np.ones(len(seen), dtype=bool)
     kept = [np.ones(len(each.indices), dtype=bool) for each in seen]
+    moves = [np.zeros_like(each.pixels) for each in seen]
     for _ in range(_ROUNDS):
         if used.sum() < LEAST_PICTURES:
             raise CalibrationError(
                 f"{used.sum()} pictures agree on a lens; at least {LEAST_PICTURES} are needed: is "
                 f"the board flat, and {board} what the pictures show?"
             )
-        matrix, distortion = _calibrated(board, _chosen(seen, used, kept), size, model)
-        lens = _judged(board, seen, used, kept, matrix, distortion, model)
+        rows = zip(seen, moves, strict=True)
+        straight = [Seen(each.indices, each.pixels - move) for each, move in rows]
+        matrix, distortion = _calibrated(board, _chosen(straight, used, kept), size, model)
+        lens = _judged(board, straight, used, kept, matrix, distortion, model)
         most = max(_OUTLIER * float(np.median(lens.errors[used])), _LEAST_OUTLIER)
         before, used = (used, kept), lens.errors <= most
         kept = _near(lens)
-        if (used == before[0]).all() and all(map(np.array_equal, kept, before[1])):
+        still = _bend(board, seen, lens, moves) < _STILL
+        if still and (used == before[0]).all() and all(map(np.array_equal, kept, before[1])):
             break
     _check_turns(lens)
     return lens
+
+
+def _bend(board: Board, seen: Sequence[Seen], lens: Lens, moves: list[Array]) -> float:
+    """Set how far the lens bends the edges of tags, so that their corners were found elsewhere.
+
+    moves: of each picture (P, 2) px. Returns the largest change, px, in pictures that count.
+    """
+    if board.kind != "aprilgrid":
+        return 0.0
+    largest = 0.0
+    for k, each in enumerate(seen):
+        corners = board.points()[each.indices].reshape(-1, 4, 3)
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+        pose = lens.camera_from_board[k]
+        points = np.stack([corners, middles]).reshape(-1, 3)
+        vector = np.asarray(cv2.Rodrigues(pose.rotations)[0], dtype=float).ravel()
+        pixels = _projected(
+            points, vector, pose.positions, lens.matrix, lens.distortion, lens.model
+        )[0].reshape(2, -1, 4, 2)
+        move = tag_edges.bent(pixels[0], pixels[1]).reshape(-1, 2)
+        if lens.used[k]:
+            largest = max(largest, float(np.abs(move - moves[k]).max()))
+        moves[k] = move
+    return largest
 
 
 def _near(lens: Lens) -> list[Mask]:

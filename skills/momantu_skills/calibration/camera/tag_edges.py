@@ -17,6 +17,8 @@ with lazily():
 
 _ALONG = np.linspace(0.12, 0.88, 24)
 """Where along an edge it is looked for, as shares of its length."""
+_BENT = float((4.0 * _ALONG * (1.0 - _ALONG)).mean())
+"""Mean distance of a bent edge from its chord, as a share of that of its middle."""
 _STEPS = 13
 """Brightnesses across the edge at each of these places."""
 _WIDE = 0.4
@@ -24,7 +26,9 @@ _WIDE = 0.4
 _CELLS = 8
 _LEAST, _MOST = 1.5, 5.0
 """px from the edge."""
-_ROUNDS = 4
+_ROUNDS = 6
+_HASTE = 1.5
+"""What is far from the edge counts less, so that a step falls short; steps are longer by this."""
 _FAR = 2.0
 """px; a tag whose corners would move farther is taken as it was."""
 
@@ -36,6 +40,22 @@ def refined(gray: NDArray[np.uint8], corners: Array) -> Array:
         found = _crossings(*_lines(gray, found))
     near = np.linalg.norm(found - corners, axis=2).max(axis=1) < _FAR
     return np.where(near[:, None, None], found, corners)
+
+
+def bent(corners: Array, middles: Array) -> Array:
+    """How far `refined` finds corners from where they are, (T, 4, 2) px, if a lens bends the edges.
+
+    The line through an edge that is bent lies beyond its ends, by most of the bend.
+    corners, middles: (T, 4, 2) px, where the lens puts the corners and the middle of each edge from
+    one corner to the next.
+    """
+    after = np.roll(corners, -1, axis=1)
+    along = (after - corners) / np.linalg.norm(after - corners, axis=2, keepdims=True)
+    across = np.stack([along[..., 1], -along[..., 0]], axis=-1)
+    off = _BENT * ((middles - 0.5 * (corners + after)) * across).sum(axis=2)
+    rows = np.stack([np.roll(across, 1, axis=1), across], axis=2)
+    offs = np.stack([np.roll(off, 1, axis=1), off], axis=2)
+    return np.asarray(np.linalg.solve(rows, offs[..., None])[..., 0])
 
 
 def _lines(gray: NDArray[np.uint8], corners: Array) -> tuple[Array, Array]:
@@ -54,16 +74,17 @@ def _lines(gray: NDArray[np.uint8], corners: Array) -> tuple[Array, Array]:
 def _edge(gray: NDArray[np.uint8], on: Array, across: Array, half: Array) -> Array:
     """How far the edge is from places (T, 4, S, 2), across (T, 4, 2): (T, 4, S) px.
 
-    The mean place of all change of brightness: blur leaves it where it is, and so do even shades on
-    both sides. half: (T, 4, 1) px, how far it is looked for.
+    The mean place of the change of brightness: blur leaves it where it is, and so do even shades on
+    both sides. What is far counts less, as there the other side of the tag's border begins, which
+    would move the edge outwards. half: (T, 4, 1) px, how far it is looked for.
     """
-    offsets = np.linspace(-1.0, 1.0, _STEPS) * half
-    places = on[:, :, :, None] + offsets[:, :, None, :, None] * across[:, :, None, None]
-    change = np.diff(_brightness(gray, places), axis=-1)
-    between = 0.5 * (offsets[..., 1:] + offsets[..., :-1])[:, :, None]
+    shares = np.linspace(-1.0, 1.0, _STEPS)
+    places = on[:, :, :, None] + (shares * half)[:, :, None, :, None] * across[:, :, None, None]
+    between = 0.5 * (shares[1:] + shares[:-1])
+    change = np.diff(_brightness(gray, places), axis=-1) * np.cos(0.5 * np.pi * between)
     total = change.sum(axis=-1)
     total = np.where(abs(total) < 1.0, 1.0, total)
-    return np.asarray(np.clip((between * change).sum(axis=-1) / total, -half, half))
+    return np.asarray(np.clip(_HASTE * (between * change).sum(-1) / total, -1.0, 1.0) * half)
 
 
 def _brightness(gray: NDArray[np.uint8], places: Array) -> Array:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from momantu_bt.formats import urdf
 from momantu_bt.formats.names import valid_names
-from momantu_bt.frames import KinematicTree
 from momantu_bt.geometry import Array
 from momantu_bt.robot import ARM, CameraSensor, RobotDescription
+from momantu_bt.wheels import between_wheels
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.robot.model import Model
 from momantu_skills.calibration.robot.parameters import Parameters
@@ -83,7 +83,7 @@ def calibrate(rows: Sequence[Row], robot: RobotDescription, settings: Settings) 
     hand = None if tip is None else BatchedChain(robot, tip)
     chains = [camera] if hand is None else [camera, hand]
     views = gather(rows, robot, chains, name)
-    parameters = Parameters(views.joints, _slides(robot), settings.track or _track(robot))
+    parameters = Parameters(views.joints, _slides(robot), settings.track or between_wheels(robot))
     unknown = [tag for tag in settings.held or () if tag not in views.tag_ids]
     if unknown:
         seen = ", ".join(map(str, views.tag_ids))
@@ -169,19 +169,3 @@ def _tip(robot: RobotDescription) -> str | None:
 def _slides(robot: RobotDescription) -> frozenset[str]:
     joints = urdf.read_urdf(robot.urdf).joints
     return frozenset(joint.name for joint in joints if joint.kind == "prismatic")
-
-
-def _track(robot: RobotDescription) -> float:
-    """Between the outermost wheels that turn about the base's y; else the footprint's width."""
-    tree = KinematicTree.from_urdf(robot.urdf, robot.base_frame)
-    commanded = {name for each in robot.actuators.values() for name in each.joints}
-    sides = []
-    for joint in tree.joints():
-        if joint.kind == "continuous" and joint.name not in commanded:
-            pose = tree.base_from_frame(joint.child, {})
-            if abs(float((pose.rotation @ np.array(joint.axis))[1])) > 0.99:
-                sides.append(float(pose.position[1]))
-    if sides and max(sides) - min(sides) > 0.05:
-        return max(sides) - min(sides)
-    across = [y for _, y in robot.footprint]
-    return max(across) - min(across)

@@ -61,8 +61,8 @@ class Model:
     hand: BatchedChain | None
     in_hand: NDArray[np.bool_]
 
-    def of(self, mask: NDArray[np.bool_]) -> Model:
-        """The same robot with some of the sightings."""
+    def of(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> Model:
+        """The same robot with some of the sightings: those of a mask, or at indices."""
         return replace(self, views=self.views.chosen(mask))
 
     def size(self, state: State) -> int:
@@ -82,14 +82,18 @@ class Model:
             return np.asarray(self._corners(state, told, tag, stand)[..., 2].mean(1).numpy())
 
     def linearised(self, state: State) -> tuple[Array, Array]:
-        """What the sightings are off, (8 N,) px, and its derivatives (8 N, size)."""
-        leaves = self._leaves(state)
-        off = self._off(state, *leaves).reshape(len(self.views), 8)
-        parts = [torch.autograd.grad(off[:, k].sum(), leaves, retain_graph=True) for k in range(8)]
-        told, tag, stand = (
-            np.stack([np.asarray(part[i].numpy()) for part in parts], 1) for i in range(3)
-        )
-        return np.asarray(off.detach().numpy()).ravel(), self._dense(state, told, tag, stand)
+        """What the sightings are off, (8 N,) px, and its derivatives (8 N, size).
+
+        Each sighting stands eight times, once for each number, so that one pass gives all.
+        """
+        count = len(self.views)
+        eight = self.of(np.repeat(np.arange(count), 8))
+        leaves = eight._leaves(state)
+        every = torch.arange(8 * count)
+        off = eight._off(state, *leaves).reshape(8 * count, 8)[every, every % 8]
+        parts = torch.autograd.grad(off.sum(), leaves)
+        told, tag, stand = (np.asarray(part.numpy()).reshape(count, 8, -1) for part in parts)
+        return np.asarray(off.detach().numpy()), self._dense(state, told, tag, stand)
 
     def driven(self, state: State) -> tuple[Array, Array]:
         """What the stands are off from odometry in its standard deviations, and its derivatives."""

@@ -57,7 +57,7 @@ class Views:
     def __len__(self) -> int:
         return len(self.tags)
 
-    def chosen(self, mask: NDArray[np.bool_]) -> Views:
+    def chosen(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> Views:
         """Some of the sightings; tags and stands keep their indices."""
         return Views(
             self.joints,
