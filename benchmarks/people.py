@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", "--out", type=Path, default=Path("runs/people"))
     told = parser.parse_args(arguments)
     world, _, robot = told.pair.partition("/")
-    rows = [HEAD]
+    rows: list[Sequence[str]] = [HEAD]
     for walkers in told.walkers:
         file = crowded(world, walkers, told.out / f"{world}_{walkers}.yaml")
         kept = told.out / f"{world}_{walkers}_{robot}.jsonl"
@@ -106,7 +106,7 @@ def _read(file: Path) -> list[Episode]:
     return [Episode(**json.loads(line)) for line in file.read_text(encoding="utf-8").splitlines()]
 
 
-def _row(walkers: int, found: list[Episode]) -> tuple[str, ...]:
+def _row(walkers: int, found: list[Episode]) -> Sequence[str]:
     brought = [each for each in found if each.brought]
     low, high = wilson(len(brought), len(found))
     times = [each.seconds for each in brought] or [float("nan")]

@@ -84,8 +84,7 @@ def make_map(
     gives the same map. A robot that explores runs the tree examples/map_a_building and knows
     nothing of the world. With --dimensions 3 the folder gets cloud.pcd, as PCL reads it, and
     overhang.yaml with what hangs over the floor: by a lidar of several rings, of the robot or in a
-    bag with PointCloud2. Ctrl-C ends the work: the map of what was seen
-    until then is saved.
+    bag with PointCloud2. Ctrl-C ends the work: the map of what was seen until then is saved.
 
     --extend goes on with a map: the robot finds itself on it near where its site says that it
     starts; a log is laid on it wherever it begins. DIR stays as it is, unless -o names it.

@@ -180,4 +180,6 @@ class Turns(_Counted):
 
 
 def _known(now: float, mapping: Mapping) -> str:
-    return f"{now:7.1f} s  {mapping.known:.1f} square metres known, {counted(mapping.loops, 'loop')}"
+    return (
+        f"{now:7.1f} s  {mapping.known:.1f} square metres known, {counted(mapping.loops, 'loop')}"
+    )

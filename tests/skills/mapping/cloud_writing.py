@@ -16,8 +16,14 @@ from tests.skills.mapping.halls import RINGS, Moment
 
 CLOUD, IMU = "sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/Imu"
 LAYOUTS: dict[str, list[tuple[str, DTypeLike]]] = {
-    "velodyne": [("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4"), ("ring", "u2")]
-    + [("time", "f4")],
+    "velodyne": [
+        ("x", "f4"),
+        ("y", "f4"),
+        ("z", "f4"),
+        ("intensity", "f4"),
+        ("ring", "u2"),
+        ("time", "f4"),
+    ],
     "ouster": [("x", "f4"), ("y", "f4"), ("z", "f4"), ("gap", "V4"), ("t", "u4"), ("ring", "u1")],
     "hesai": [("x", "f4"), ("y", "f4"), ("z", "f4"), ("timestamp", "f8"), ("ring", "u2")],
     "doubles": [("x", "f8"), ("y", "f8"), ("z", "f8"), ("t", "u4")],
@@ -39,7 +45,10 @@ class Written:
     """Points without an echo that are mixed in."""
 
 
-def cloud(turn: PointCloud, how: Written = Written(), topic: str = "/points") -> Message:
+USUAL = Written()
+
+
+def cloud(turn: PointCloud, how: Written = USUAL, topic: str = "/points") -> Message:
     """A turn of `halls` as a message."""
     table, stamp = _table(turn, how)
     height = len(RINGS) if how.rows else 1
@@ -75,7 +84,7 @@ def _table(turn: PointCloud, how: Written) -> tuple[NDArray[np.void], float]:
     if how.nothing:
         at = np.arange(0, len(points), max(1, len(points) // how.nothing))
         points = np.insert(points, at, np.array([[np.nan] * 3]), axis=0)
-        points[at[::2]] = 0.0
+        points[(at + np.arange(len(at)))[::2]] = 0.0
         times, rings = np.insert(times, at, times[at]), np.insert(rings, at, rings[at])
     begin = FIRST + turn.stamp + float(np.nanmin(times))
     ends = how.layout in ("velodyne", "rings", "bare")
@@ -121,7 +130,10 @@ def imu(reading: ImuReading, topic: str = "/imu", frame_id: str = "imu") -> list
         stamp = FIRST + float(time)
         content = {
             "header": header(frame_id, stamp),
-            "orientation": ("geometry_msgs/msg/Quaternion", {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}),
+            "orientation": (
+                "geometry_msgs/msg/Quaternion",
+                {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+            ),
             "orientation_covariance": np.full(9, -1.0),
             "angular_velocity": _vector(rate),
             "angular_velocity_covariance": np.zeros(9),
@@ -145,10 +157,7 @@ def mount(child: str, pose: Transform, parent: str = "base_link") -> Message:
 
 def moved(moment: Moment) -> list[Message]:
     """Odometry on /tf."""
-    return [
-        frame("odom", "base_link", FIRST + stamp, pose)
-        for stamp, pose, _ in moment.odometry
-    ]
+    return [frame("odom", "base_link", FIRST + stamp, pose) for stamp, pose, _ in moment.odometry]
 
 
 def sorted_by_time(messages: Sequence[Message]) -> list[Message]:

@@ -45,9 +45,7 @@ def _scan_topic(path: Path, reader: Any, topic: str | None) -> Any:
     if not found:
         clouds = any(each.msgtype == CLOUD for each in reader.connections)
         hint = "; --dimensions 3 maps its point clouds" if clouds else ""
-        raise LogError(
-            f"{path} holds no sensor_msgs/LaserScan; it holds {ros.kinds(reader)}{hint}"
-        )
+        raise LogError(f"{path} holds no sensor_msgs/LaserScan; it holds {ros.kinds(reader)}{hint}")
     return ros.chosen(path, found, topic, "scans of several lasers", "--scan")
 
 

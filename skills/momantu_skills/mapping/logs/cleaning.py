@@ -31,7 +31,8 @@ def backwards(
 ) -> list[str]:
     """A note of how many stamps are earlier than the one before, if any.
 
-    what: is stamped, in the singular. error: makes the error for the scan of an index, with what is wrong and what to do.
+    what: is stamped, in the singular. error: makes the error for the scan of an index, with what is
+    wrong and what to do.
 
     Raises:
         LogError: the clock jumps back, or goes back little by little.

@@ -88,7 +88,7 @@ def _rings(message: Any, table: NDArray[np.void], kept: Any) -> NDArray[np.int64
     names = table.dtype.names or ()
     name = next((name for name in RINGS if name in names), None)
     if name is not None and table.dtype[name].kind in "iu":
-        return table[name][kept].astype(np.int64)
+        return np.asarray(table[name][kept].astype(np.int64))
     if message.height > 1:
-        return np.repeat(np.arange(message.height), message.width)[kept]
+        return np.asarray(np.repeat(np.arange(message.height), message.width)[kept])
     return None

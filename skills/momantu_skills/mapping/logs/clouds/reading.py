@@ -35,8 +35,8 @@ _HOW = {
     "taken to be those of each turn's beginning",
     times.TURNED: "the points have no times: they are taken to have been measured evenly as the "
     "lidar turned, and a turn to end at its stamp",
-    times.AT_ONCE: "the points have no times, and their order tells none: those of a turn are taken "
-    "to have been measured at once, so that motion bends them",
+    times.AT_ONCE: "the points have no times, and their order tells none: a turn's points are "
+    "taken to have been measured at once, so that motion bends them",
 }
 
 
