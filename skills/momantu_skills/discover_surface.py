@@ -29,8 +29,7 @@ from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from momantu_skills.gaze import surveys
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import surveys, tucking
     from momantu_skills.mapping import coverage, frontiers, sightings, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import route, trip, vehicle
@@ -116,7 +115,7 @@ class DiscoverSurface(Skill):
         given = self.site.services.get("navigate", {})
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
-        base.unknown_cost = math.inf
+        base.caution.unknown_cost = math.inf
         controller = mppi.Mppi(robot.description.base, config, self.random)
         while True:
             seen = notes.nearest(base.pose(), self.site.surfaces.values(), self._fits)

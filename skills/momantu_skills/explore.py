@@ -24,7 +24,7 @@ from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.map.maps import GridMap
 
 with lazily():
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import tucking
     from momantu_skills.mapping import frontiers, watching
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import moves, route, trip, vehicle
@@ -108,7 +108,7 @@ class Explore(Skill):
         given = self.site.services.get("navigate", {})
         config = configured(NavigationConfig, given, "navigate")
         base = vehicle.Vehicle(self, robot, self.mapping, self.planning_scene, config)
-        base.unknown_cost = math.inf
+        base.caution.unknown_cost = math.inf
         controller = mppi.Mppi(robot.description.base, config, self.random)
         watch = watching.Watch(self, robot, self.mapping, self.planning_scene)
         return _Tour(base, controller, self.mapping, watch)

@@ -29,8 +29,7 @@ from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.plan.goals import Stand
 
 with lazily():
-    from momantu_skills.gaze import surveys
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import surveys, tucking
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import trip
     from momantu_skills.navigation.drive.vehicle import Vehicle

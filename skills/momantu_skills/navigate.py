@@ -27,7 +27,7 @@ from momantu_skills.navigation.map.own import OwnMap
 from momantu_skills.navigation.plan.goals import Stand, before_surface, surface_at, within_reach
 
 with lazily():
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import tucking
     from momantu_skills.navigation.control import mppi
     from momantu_skills.navigation.drive import trip
 

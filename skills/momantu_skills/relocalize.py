@@ -25,7 +25,7 @@ from momantu_skills.navigation.localize.confidence import estimate, is_localized
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
-    from momantu_skills.manipulation import tucking
+    from momantu_skills.gaze import tucking
     from momantu_skills.navigation.control import footprint, guard, mppi
     from momantu_skills.navigation.drive import lost
     from momantu_skills.navigation.map import believed

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from typing import Any
-
 from momantu_bt.activity import Activity
 from momantu_bt.claim import Claim, JointsAt
 from momantu_bt.failure import Failure, FailureValue
 from momantu_bt.formats.names import nearest
-from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
-from momantu_bt.messages import JointPositions, JointTrajectory
+from momantu_bt.messages import JointPositions
 from momantu_bt.robot import ARM, CAMERA_CARRIER, Robot
-from momantu_bt.skill import Compute, In, Needs, Run, Skill, compute
+from momantu_bt.skill import In, Needs, Run, Skill
 from momantu_bt.symptom import Symptom
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
@@ -34,6 +30,7 @@ encoders have an error."""
 class ResetPose(Skill):
     """Move the arm to a named pose around obstacles. A held object stays in the hand.
 
+    The camera looks first at parts of the way that no picture has shown.
     A pose that names only some joints moves only those. Fails with UNKNOWN_POSE, NO_PLAN,
     START_IN_COLLISION or ARM_STUCK.
     """
@@ -62,24 +59,11 @@ class ResetPose(Skill):
         goal = arm.posed(wanted)
         if abs(goal - arm.joints).max() > CLOSE:
             arm.observe()
-            for trajectory in (yield from self._way(arm, goal)):
+            for trajectory in (yield from unseen_ways.routed_in_sight(arm, goal, THINKING)):
                 for phase in arm.follow(trajectory, "moving"):
                     self._turn_camera(robot, wanted)
                     yield phase
         yield from self._finish_camera(robot, wanted)
-
-    def _way(
-        self, arm: Arm, goal: Array
-    ) -> Generator[str | Compute, Any, Sequence[JointTrajectory]]:
-        """Plan the path to the pose; with a held object, only through space that the camera saw."""
-        held = self.planning_scene.held
-        if held is None:
-            return (yield from compute(lambda: arm.route([goal], held), THINKING))
-        return (
-            yield from unseen_ways.planned_in_sight(
-                arm, lambda: arm.route([goal], held), lambda way: way, THINKING
-            )
-        )
 
     def claim(self, robot: Robot, failure: FailureValue | None) -> Claim | None:
         """Claim that the joints of arm and camera are at the pose; a failure denies it."""

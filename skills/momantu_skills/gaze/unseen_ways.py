@@ -73,6 +73,20 @@ def planned_in_sight(
     return made
 
 
+def routed_in_sight(
+    arm: Arm, goal: Array, thinking: float
+) -> Generator[str | Compute, Any, list[JointTrajectory]]:
+    """A way to a posture (n,) with what the hand holds, as in `planned_in_sight`.
+
+    Raises:
+        Failure: NO_PLAN or START_IN_COLLISION.
+    """
+    held = arm.service.held
+    return (
+        yield from planned_in_sight(arm, lambda: arm.route([goal], held), lambda way: way, thinking)
+    )
+
+
 def blind_spot(arm: Arm, transit: Sequence[JointTrajectory]) -> Array | None:
     """The middle (3,), in odom, of an unseen part of the path over surfaces or near obstacles.
 

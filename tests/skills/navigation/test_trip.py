@@ -152,7 +152,41 @@ def test_a_base_that_does_not_come_along_makes_no_progress(
     base = _base(obedient, Pose2D(1.5, 3.0, 0.0))
     base.stuck = True
     assert _code(base, run_move, _to(Pose2D(6.0, 3.0, 0.0)), recovery=False) == "NO_PROGRESS"
+    assert base.caution.factors() is None  # no place on its way is to blame
     assert base.now() < 2.0 * base.config.patience
+
+
+def test_where_it_was_held_up_it_looks_for_another_way(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
+    """Two doorways; the nearer one is narrow, and the base does not get through."""
+    walls = ((3.9, 0.0, 4.1, 0.8), (3.9, 1.3, 4.1, 4.5), (3.9, 5.4, 4.1, 6.0))
+    base = _base(obedient, Pose2D(2.0, 2.0, 0.0), *walls)
+    held_at: list[float] = []
+
+    def hold() -> None:
+        pose = base.pose()
+        ahead = abs(pose.yaw) < 0.7 and base.phases[-1:] == ["drive"]
+        base.stuck = ahead and pose.y < 2.0 and pose.x > 3.5
+        if base.stuck:
+            held_at.append(base.now())
+
+    run_move(travel(base, _mppi(base), _to(Pose2D(6.0, 2.0, 0.0)), recovery=True), hold)
+    assert base.pose().distance_to(Pose2D(6.0, 2.0)) <= TOLERANCE[0]
+    assert base.config.patience - 1.0 < held_at[-1] - held_at[0] < 2.0 * base.config.patience
+
+
+def test_where_there_is_no_other_way_it_tries_the_same_again(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0), *DOOR)
+
+    def hold() -> None:
+        base.stuck = base.pose().x > 3.5 and base.now() < 12.0 and base.phases[-1:] == ["drive"]
+
+    run_move(travel(base, _mppi(base), _to(Pose2D(6.0, 3.0, 0.0)), recovery=True), hold)
+    assert base.pose().distance_to(Pose2D(6.0, 3.0)) <= TOLERANCE[0]
+    assert base.now() > 12.0
 
 
 @pytest.mark.parametrize("belief", [Belief(sigma=0.3), Belief(quality=0.2), Belief(sigma=0.14)])

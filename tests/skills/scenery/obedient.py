@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.control.footprint import discs, half_width
+from momantu_skills.navigation.drive.caution import Caution
 from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.maps import GridMap
 
@@ -42,6 +43,7 @@ class Obedient:
         self.config, self.limits = NavigationConfig(), limits
         self.glides = limits.sideways > 0.0
         self.costmap = Costmap(GridMap(cells, 0.05, (0.0, 0.0)), None, self.config)
+        self.caution = Caution(self.costmap)
         self.base_discs = self.low_discs = discs(OUTLINE)
         reach = np.array([[0.25 + arm - 0.05, 0.0, 0.05]]) if arm else np.empty((0, 3))
         self.discs = np.vstack([self.base_discs, reach])
@@ -69,9 +71,6 @@ class Obedient:
 
     def show(self, path: Array) -> None:
         """Nobody watches."""
-
-    def caution(self) -> None:
-        """The map is known."""
 
     def speed(self) -> tuple[float, float, float]:
         return self.v, self.w, self.u

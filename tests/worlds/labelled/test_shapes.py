@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from momantu_worlds.labelled.families import CATEGORIES, FAMILIES, draw_shape
 from momantu_worlds.labelled.heaps import heap, resting
-from momantu_worlds.labelled.shapes import CATEGORIES, FAMILIES, Shape, draw_shape
+from momantu_worlds.labelled.shape import Shape
 from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.sapien.build.meshes import collision_mesh
 from momantu_worlds.scenes.geometry.bodies import Hull, Mesh

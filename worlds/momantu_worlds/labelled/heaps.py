@@ -13,7 +13,7 @@ from shapely.geometry import MultiPoint, Polygon
 from shapely.prepared import prep
 
 from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
-from momantu_worlds.labelled.shapes import Draw, Shape, draw_color
+from momantu_worlds.labelled.shape import Draw, Shape, draw_color
 from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.scenes.geometry.bodies import Box, Cylinder, Part, Sphere
 from momantu_worlds.scenes.geometry.parts import block

@@ -19,7 +19,7 @@ from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.errors import InputError
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.world import seeded
-from momantu_worlds.labelled.shapes import Draw, Shape, draw_color
+from momantu_worlds.labelled.shape import Draw, Shape, draw_color
 from momantu_worlds.scenes.arrange.mesh_files import mesh_parts
 from momantu_worlds.scenes.file.furniture import MESH_ENDINGS, MeshUse
 from momantu_worlds.scenes.geometry.bodies import Hull, Mesh, Part

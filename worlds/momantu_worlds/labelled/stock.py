@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from momantu_bt.categories import USUAL, Symmetry
+from momantu_worlds.labelled.families import CATEGORIES, draw_shape
 from momantu_worlds.labelled.own import OwnCategory
-from momantu_worlds.labelled.shapes import CATEGORIES, Draw, Shape, draw_shape
+from momantu_worlds.labelled.shape import Draw, Shape
 
 OWN_SHARE = 0.45
 """Share of the things that are of categories made from meshes, if there are any."""

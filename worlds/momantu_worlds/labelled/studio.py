@@ -21,7 +21,7 @@ from momantu_bt.world import WorldError, seeded
 from momantu_bt.world_plugins import WORLDS as ENTRIES
 from momantu_worlds.labelled.heaps import USUAL, Laid, Manner, arm, heap
 from momantu_worlds.labelled.own import OwnCategory
-from momantu_worlds.labelled.shapes import Draw, draw_color
+from momantu_worlds.labelled.shape import Draw, draw_color
 from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.sapien.build.bodies import add_lights, look_of
 from momantu_worlds.sapien.config import CameraErrors

@@ -34,6 +34,8 @@ UNMAPPED_DETOURS = 40
 """The same without a map, where every closed door is a surprise."""
 LONGEST_BACK = 0.8
 """Longest distance that the base backs up from a table to free its arm, m."""
+SNUG = 0.1
+"""Clearance beside the base up to which a place that it does not get through is too narrow, m."""
 PROGRESS = 0.1
 """Decrease of the remaining distance that counts as progress, in weighted metres."""
 
@@ -76,7 +78,7 @@ def cruise(vehicle: Vehicle, mppi: Mppi, route: Route, distance: float) -> Drive
         if watch.replan_due(route, pose):
             route = yield from _replanned(vehicle, route, watch)
             continue
-        watch.check(route.to_go(pose))
+        watch.check(route, pose)
         off = wrap_angle(route.heading(pose) - pose.yaw)
         turn_first = abs(off) > TURN_FIRST and abs(vehicle.speed()[0]) < 0.1
         if turn_first and (yield from turn_to(vehicle, pose.yaw + off, "turn to the path")):
@@ -137,15 +139,26 @@ class _Watch:
             return True
         return age > 0.4 and route.crossed(self._vehicle, pose)
 
-    def check(self, to_go: float) -> None:
-        """Raise NO_PROGRESS if the remaining distance has not fallen for too long."""
-        now = self._vehicle.now()
+    def check(self, route: Route, pose: Pose2D) -> None:
+        """Raise NO_PROGRESS if the remaining distance has not fallen for too long.
+
+        Plans of this vehicle then avoid a narrow point ahead if there is another way.
+        """
+        vehicle, now, to_go = self._vehicle, self._vehicle.now(), route.to_go(pose)
         if to_go < self._best - PROGRESS:
             self._best, self._best_at = to_go, now
-        if now - self._best_at > self._vehicle.config.patience:
+        if now - self._best_at > vehicle.config.patience:
+            x, y, room = route.narrowest(vehicle, pose)
+            if room < vehicle.half_width + SNUG:
+                vehicle.caution.avoid(x, y)
+                why = f"at ({x:.2f}, {y:.2f}) its way is about {2 * room:.2f} m wide"
+            else:
+                why = "its way is wide enough: something may hold its wheels, or stand beside them"
             raise Failure(
                 "NO_PROGRESS",
-                f"the base got no nearer for {self._vehicle.config.patience:.0f} s",
+                f"the base, {2 * vehicle.half_width:.2f} m wide, got no nearer for "
+                f"{vehicle.config.patience:.0f} s; {why}",
+                at=[x, y],
                 to_go=to_go,
-                blocked=self._vehicle.blocked_total,
+                blocked=vehicle.blocked_total,
             )

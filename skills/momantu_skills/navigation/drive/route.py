@@ -23,6 +23,8 @@ EXTRA = 0.02
 """Clearance that the planner adds to the footprint, m."""
 LOOK_AHEAD = 4.0
 """Length of the path ahead that is watched for new obstacles, m."""
+PASSAGE = 1.0
+"""Distance ahead within which a base that gets no nearer is held up, m."""
 CROSSED_BY = 0.05
 """Missing clearance on the path that causes a new plan, m."""
 
@@ -52,6 +54,17 @@ class Route:
         cells = ((ahead[:count] - vehicle.costmap.frame[:2]) / grid.resolution).astype(np.int64)
         room = field[cells[:, 1], cells[:, 0]]
         return bool((room < planning_radius(vehicle) - CROSSED_BY).any())
+
+    def narrowest(self, vehicle: Vehicle, pose: Pose2D) -> tuple[float, float, float]:
+        """Return the narrowest point of the next metres (map): x, y, and the clearance there, m."""
+        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
+        ahead = self.plan.path[int(np.argmin(away)) :]
+        near = ahead[np.hypot(ahead[:, 0] - pose.x, ahead[:, 1] - pose.y) < PASSAGE]
+        grid = vehicle.costmap.grid
+        cells = np.array([grid.index(float(x), float(y)) for x, y in near])
+        room = vehicle.costmap.field[cells[:, 0], cells[:, 1]]
+        least = int(np.argmin(room))
+        return float(near[least, 0]), float(near[least, 1]), float(room[least])
 
     def heading(self, pose: Pose2D, ahead: float = 0.5) -> float:
         """Return the direction from a pose to the point of the path `ahead` m farther on, rad."""
@@ -160,7 +173,7 @@ def planned(
     weight: Field | None = None,
 ) -> Plan | None:
     """Plan the cheapest path from `start`, by default the base's position; see `planner.plan`."""
-    config, radius, caution = vehicle.config, planning_radius(vehicle), vehicle.caution()
+    config, radius, caution = vehicle.config, planning_radius(vehicle), vehicle.caution.factors()
     if caution is not None:
         weight = caution if weight is None else weight * caution
     return plan(

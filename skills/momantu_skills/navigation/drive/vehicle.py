@@ -19,6 +19,7 @@ from momantu_bt.skill import Run, Skill
 from momantu_bt.zone import ZoneKind
 from momantu_skills.navigation.config import NavigationConfig
 from momantu_skills.navigation.drive.body import Body, BodyScene
+from momantu_skills.navigation.drive.caution import Caution
 from momantu_skills.navigation.map.believed import believed_maps
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.own import OwnMap
@@ -30,7 +31,7 @@ with lazily():
     from momantu_skills.navigation.map import costmap, heights, rolling
 
 if TYPE_CHECKING:
-    from momantu_skills.navigation.map.fields import Field
+    pass
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
@@ -50,9 +51,6 @@ SHOWN = 3.0
 """Time for which a path and the costmap are shown, s; a base that drives plans more often."""
 SLOW_NEAR = 2.5
 """Distance of slow zones whose limit manoeuvres expect, m: they are planned from not so far."""
-UNKNOWN_COST = 3.0
-"""Cost of a metre of floor that a growing map does not know yet, relative to one that it does: a
-known way is preferred unless it is much longer."""
 AT_REST = 0.01
 """Speed below which the base counts as standing, m/s and rad/s."""
 
@@ -97,13 +95,13 @@ class Vehicle:
         if shared is None and offers(localization, OwnMap):
             shared = cast(OwnMap, localization).costmap
         self.mapped = skill.site.map_file is not None or offers(localization, OwnMap)
-        self.unknown_cost = UNKNOWN_COST
         earlier = scene.low_things if shared is None else np.zeros((0, 2))
         self._top = top
         self.localization = localization
         self._skill, self._robot, self._scene = skill, robot, scene
         self._frames, self._clock = skill.frames, skill.clock
         self.costmap = self._own_costmap(goals) if shared is None else shared
+        self.caution = Caution(self.costmap)
         self._slows = self.costmap.zones.slow
         outline = np.array(description.footprint)
         self.base_discs = self.low_discs = self.discs = footprint.discs(outline)
@@ -322,15 +320,6 @@ class Vehicle:
             grids = [grid] if self.costmap.grows else believed_maps(site)
             self._tall = grid, heights.taller_than(grids, site.surfaces.values(), self._top)
         return self._tall[1]
-
-    def caution(self) -> Field | None:
-        """Return the factors (rows, columns) on the cost of each metre; None: 1 everywhere.
-
-        Of what the map does not know: `unknown_cost`, which may be infinite.
-        """
-        if not self.costmap.grows:
-            return None
-        return np.where(self.costmap.unknown, self.unknown_cost, 1.0).astype(np.float32)
 
 
 def _over_floor(points: Array) -> Array:

@@ -17,7 +17,7 @@ from momantu_skills.navigation.map.believed import believed_maps, corrections
 from momantu_skills.navigation.map.sensing import Rays
 
 with lazily():
-    from momantu_skills.navigation.localize import localizer, odometry_alone
+    from momantu_skills.navigation.localize import localizer, scan_odometry
 
 
 MOVING = 1e-4
@@ -30,8 +30,8 @@ class LocalizationService(Service):
     It uses the laser when odometry has moved, and for a while at rest after a reset or a stop. The
     laser is assumed to be fixed to the base. If the laser fails, the service follows odometry
     alone, and skills that drive report the failure themselves. When scans return, the first one is
-    used. Where the site has no map, odometry alone says where the robot is, in a map's frame that
-    begins at the site's start.
+    used. Where the site has no map, odometry says where the robot is, corrected by laying each scan
+    onto those of the last metres, in a map's frame that begins at the site's start.
     """
 
     rate: ClassVar[float] = 10.0
@@ -50,9 +50,9 @@ class LocalizationService(Service):
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
         self._site, self._corrections = context.site, corrections(context.site)
-        self._localizer: localizer.Localizer | odometry_alone.OdometryAlone
+        self._localizer: localizer.Localizer | scan_odometry.ScanOdometry
         if context.site.map_file is None:
-            self._localizer = odometry_alone.OdometryAlone(context.site.start)
+            self._localizer = scan_odometry.ScanOdometry(context.site.start)
         else:
             grid = believed_maps(context.site)[0]
             self._localizer = localizer.Localizer(grid, self._config, context.random)
@@ -77,7 +77,7 @@ class LocalizationService(Service):
             self._since_scan[1] += turn
             self._rest_scans = max(self._rest_scans, 3)
         self._follow_map()
-        if self._site.map_file is not None and self._due(moving):
+        if self._due(moving):
             self._weigh(robot, moving)
         elif self._told:
             return

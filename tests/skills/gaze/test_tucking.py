@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+from momantu_skills.gaze.tucking import STICKS_OUT, take_in
 from momantu_skills.manipulation.scene.surroundings import Surroundings
-from momantu_skills.manipulation.tucking import STICKS_OUT, take_in
 
 from momantu_bt.geometry import Pose, Transform
 from momantu_bt.messages import DetectedObject, GripperCommand

@@ -6,7 +6,8 @@ import numpy as np
 
 from momantu_bt.failure import Failure
 from momantu_bt.robot import Robot
-from momantu_bt.skill import Run, Skill, compute
+from momantu_bt.skill import Run, Skill
+from momantu_skills.gaze.unseen_ways import routed_in_sight
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.scene.arm_scene import ArmScene
 from momantu_skills.manipulation.scene.surroundings import within
@@ -23,8 +24,7 @@ NO_WAY = ("NO_PLAN", "START_IN_COLLISION")
 def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
     """Fold an arm that extends beyond the base into `home`, or `carry` if it holds an object.
 
-    If no path is found, the base drives with the arm as it is; that may give the arm room.
-
+    It looks first at parts of its way that no picture has shown; the skill uses CAMERA_CARRIER.
     Where it finds no way, the base drives with the arm as it is: that may be what gives it room.
 
     Raises:
@@ -41,7 +41,7 @@ def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
     yield from arm.settle()
     arm.observe()
     try:
-        way = yield from compute(lambda: arm.route([goal], held), THINKING)
+        way = yield from routed_in_sight(arm, goal, THINKING)
     except Failure as failure:
         if failure.code not in NO_WAY:
             raise
