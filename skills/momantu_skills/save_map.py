@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
+from momantu_bt.formats.names import counted
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot
 from momantu_bt.skill import Failure, In, Needs, Out, Run, Skill, compute
@@ -14,7 +15,7 @@ from momantu_skills.mapping.own import Mapping
 
 with lazily():
     from momantu_bt.formats.files import OutputError
-    from momantu_skills.mapping import building, results
+    from momantu_skills.mapping import building, rehearsed, results
 
 BUDGET = 0.5
 """Time allowed for the last loops and the floor plan, s."""
@@ -47,8 +48,12 @@ class SaveMap(Skill):
 
     @classmethod
     def rehearsal(cls, seed: int) -> Entries[str, Any]:
-        """A folder that cannot be made: nothing is written."""
-        return {"inputs": {"folder": "/dev/null/map"}}
+        """A map of two scans, and a folder that is removed afterwards."""
+        mapping = rehearsed.BegunMapping()
+        return {
+            "inputs": {"folder": str(mapping.folder), "replace": True},
+            "services": {"mapping": mapping},
+        }
 
     def run(self, robot: Robot) -> Run:
         """Finish a copy of the survey, and write it."""
@@ -56,12 +61,11 @@ class SaveMap(Skill):
         try:
             results.check_folder(folder, replace=self.replace)
         except OutputError as error:
-            raise Failure("MAP_NOT_WRITTEN", _told(error, self.replace)) from None
+            raise Failure("MAP_NOT_WRITTEN", _told(error, folder, self.replace)) from None
         survey = self.mapping.survey
         if len(survey.used) < FEWEST:
-            raise Failure(
-                "NOTHING_MAPPED", f"the map has {len(survey.used)} scans, {FEWEST} needed"
-            )
+            has = counted(len(survey.used), "scan")
+            raise Failure("NOTHING_MAPPED", f"the map has {has}, {FEWEST} needed")
         self.mapping.anchors.note(survey.mapper.poses)
         work = partial(building.built_of, survey, self.resolution, stands=self.mapping.stands)
         built: building.Built = yield from compute(work, BUDGET)
@@ -74,6 +78,9 @@ class SaveMap(Skill):
         self.log(f"{self.known:.1f} square metres of free floor saved in {folder}")
 
 
-def _told(error: OutputError, replace: bool) -> str:
+def _told(error: OutputError, folder: Path, replace: bool) -> str:
+    """What is wrong with a folder; a map in it may be replaced."""
     said = str(error)
-    return said if replace or "already" not in said else f"{said}, or say `replace: true`"
+    if replace or results.read_report(folder) is None:
+        return said
+    return f"{said}, or say `replace: true`"

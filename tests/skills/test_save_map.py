@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from momantu_bt.formats.files import OutputError
 from momantu_bt.formats.maps import FREE, OCCUPIED, read_map
 from momantu_bt.geometry import Pose2D
 from momantu_bt.site_file import Names, SiteFileError, read_names
+from momantu_bt.testing import check_skill
 from momantu_bt.world import Surface
 from tests.skills.mapping.walls import ROUND, driven, logged
 from tests.skills.scenery.building import START, TOP, building_of, code, measured
@@ -29,6 +31,24 @@ def test_it_moves_nothing() -> None:
     """A tree may save the map while another skill drives."""
     assert not SaveMap.uses
     assert set(SaveMap.needs) == {"mapping"}
+
+
+def test_the_test_kit_saves_a_map_and_leaves_nothing(monkeypatch: Any, tmp_path: Path) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    assert check_skill(SaveMap, halts=2) == []
+    gc.collect()
+    assert not list(tmp_path.iterdir())
+
+
+def test_only_a_map_is_said_to_be_replaced(building: Any, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    failure = building(f"save_map: {{folder: {tmp_path}}}").failure
+    assert failure.code == "MAP_NOT_WRITTEN"
+    assert "replace" not in failure.message
+    out = tmp_path / "map"
+    twice = f"ahead\nsave_map: {{folder: {out}}}\nsave_map: {{folder: {out}}}"
+    failure = building(twice).failure
+    assert failure.message.endswith("choose another folder, or say `replace: true`")
 
 
 def test_a_map_is_saved_with_the_names_that_were_taught(building: Any, tmp_path: Path) -> None:

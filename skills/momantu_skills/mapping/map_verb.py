@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from momantu_bt.errors import ExitCode, InputError
+from momantu_bt.formats.names import counted
 from momantu_bt.lazy import lazily
 
 with lazily():
     from momantu_skills.mapping import building, exploring, extending, progress, results
     from momantu_skills.mapping import survey as surveys
     from momantu_skills.mapping.logs import reading
+    from momantu_skills.mapping.three_d import log_verb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +57,14 @@ def make_map(
     scan: Annotated[
         str | None, typer.Option(help="The laser's topic, in a bag or record with several.")
     ] = None,
+    cloud: Annotated[
+        str | None,
+        typer.Option(help="The lidar's topic, in a bag with several; with --dimensions 3."),
+    ] = None,
+    imu: Annotated[
+        str | None,
+        typer.Option(help="The IMU's topic; none: do without it; with --dimensions 3."),
+    ] = None,
     extend: Annotated[
         Path | None, typer.Option("--extend", metavar="DIR", help="Go on with the map of DIR.")
     ] = None,
@@ -73,8 +83,8 @@ def make_map(
     with what the map was made of: all or none. The same log, or the same world, robot and seed,
     gives the same map. A robot that explores runs the tree examples/map_a_building and knows
     nothing of the world. With --dimensions 3 the folder gets cloud.pcd, as PCL reads it, and
-    overhang.yaml with what hangs over the floor. Ctrl-C ends the work: the map of what was seen
-    until then is saved.
+    overhang.yaml with what hangs over the floor: by a lidar of several rings, of the robot or in a
+    bag with PointCloud2. Ctrl-C ends the work: the map of what was seen until then is saved.
 
     --extend goes on with a map: the robot finds itself on it near where its site says that it
     starts; a log is laid on it wherever it begins. DIR stays as it is, unless -o names it.
@@ -87,6 +97,7 @@ def make_map(
       momantu-bt map --log office.log.gz -o maps/office --resolution 0.03
       momantu-bt map --log rosbag2_2026_03_01 --scan /scan_front -o maps/hall
       momantu-bt map --log runs/3 -o maps/flat
+      momantu-bt map --log hall.bag --dimensions 3 --cloud /velodyne_points -o maps/hall
       momantu-bt map --world my_rooms.yaml --seed 3 -o maps/rooms
       momantu-bt map --world my_rooms.yaml --seed 4 --extend maps/rooms -o maps/more --view
       momantu-bt map --log today.log --extend maps/office -o maps/office
@@ -107,14 +118,17 @@ def make_map(
         raise InputError("give -o with a new folder for the map")
     if view and world is None:
         raise InputError("--view shows a world that a robot explores: give --world")
-    if dimensions == 3:
-        _check_spatial(log, extend)
+    _check_dimensions(dimensions, log, extend, scan, cloud or imu)
     results.check_folder(out, replace=extend is not None and out.resolve() == extend.resolve())
     earlier = None if extend is None else extending.read_earlier(extend)
     if world is not None:
         shown = view_port if view else None
         return _explore(world, robot, seed, out, earlier, shown, spatial=dimensions == 3)
     assert log is not None
+    if dimensions == 3:
+        about, ended = log_verb.map_clouds(log, cloud, imu, out, resolution or RESOLUTION)
+        typer.echo(_summary(about, out))
+        return ExitCode.INTERRUPTED if ended else ExitCode.SUCCESS
     return _of_log(log, scan, out, resolution, earlier)
 
 
@@ -146,18 +160,23 @@ def _of_log(
     return ExitCode.INTERRUPTED if built.interrupted else ExitCode.SUCCESS
 
 
-def _check_spatial(log: Path | None, extend: Path | None) -> None:
-    """Refuse what is done in two dimensions alone."""
-    if log is not None:
-        raise InputError(
-            "logs are mapped in two dimensions: leave out --dimensions 3, or let a robot with a "
-            "lidar of several rings and an IMU explore a --world"
-        )
+def _check_dimensions(
+    dimensions: int, log: Path | None, extend: Path | None, scan: str | None, spatial: str | None
+) -> None:
+    """Refuse options that do not fit together. spatial: one that is for clouds alone."""
+    if dimensions == 2:
+        if spatial is not None:
+            raise InputError("--cloud and --imu are for maps in three dimensions: --dimensions 3")
+        return
     if extend is not None:
         raise InputError(
             "--extend goes on with a map in two dimensions: leave out --dimensions 3, or leave "
             "out --extend and map the whole world anew"
         )
+    if scan is not None:
+        raise InputError("--scan chooses a laser; with --dimensions 3 --cloud chooses a lidar")
+    if spatial is not None and log is None:
+        raise InputError("--cloud and --imu name topics of a bag: give --log")
 
 
 def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D | None:
@@ -212,7 +231,8 @@ def _summary(about: dict[str, Any], out: Path) -> str:
     width, height = about["size_m"]
     points = f"{about['points']} points; " if "points" in about else ""
     return (
-        f"{points}{about['scans']} scans on {about['way_m']:.0f} m, {about['loops']} loops: "
+        f"{points}{counted(about['scans'], 'scan')} on {about['way_m']:.0f} m, "
+        f"{counted(about['loops'], 'loop')}: "
         f"a map of "
         f"{width:.1f} x {height:.1f} m, {about['free_m2']:.0f} square metres of it free\n"
         f"written to {out}: look at {out / results.PICTURE}"

@@ -15,6 +15,7 @@ from rich.progress_bar import ProgressBar
 from rich.text import Text
 
 from momantu_bt.failure import Failure
+from momantu_bt.formats.names import counted
 from momantu_skills.mapping.growing_plan import GrowingPlan
 from momantu_skills.mapping.pictures.terminal import Overlay, map_text
 from momantu_skills.navigation.map.maps import GridMap
@@ -108,16 +109,15 @@ class Exploration:
         self._display.show(head, grid, overlay)
 
 
-class Scans:
-    """Shows how far a log is mapped; Ctrl-C ends the work between two scans.
+class _Counted:
+    """Shows how far a log is mapped; Ctrl-C ends the work between two of what is counted.
 
-    scans: how many there are. survey: what they are added to. doing: in words, such as `mapping`.
+    count: how many there are of `what`. doing: in words, such as `the log alone: `.
     """
 
-    def __init__(self, scans: int, survey: Survey, doing: str = "") -> None:
-        self._scans, self._next = scans, STEP
-        self._survey, self._doing = survey, doing
-        self._plan = GrowingPlan(CELL, GROWS)
+    def __init__(self, count: int, what: str, doing: str = "") -> None:
+        self._count, self._next = count, STEP
+        self._what, self._doing = what, doing
         self._display = _Display()
         self._stopped = False
 
@@ -136,24 +136,50 @@ class Scans:
 
     def __call__(self, done: int, loops: int) -> bool:
         """Show how far it is; True if the work is to end."""
-        said = f"{self._doing}{done} of {self._scans} scans, {loops} loops"
+        said = f"{self._doing}{done} of {self._count} {self._what}, {counted(loops, 'loop')}"
         if self._display.live:
             if self._display.due():
                 self._show(done, said)
-        elif done >= self._next * self._scans:
+        elif done >= self._next * self._count:
             typer.echo(said, err=True)
             self._next += STEP
         return self._stopped
 
     def _show(self, done: int, said: str) -> None:
+        self._display.show(self._head(done, said), None, Overlay())
+
+    def _head(self, done: int, said: str) -> RenderableType:
+        words = Text(said, style="bold", no_wrap=True)
+        return Group(words, ProgressBar(total=self._count, completed=done, width=BAR))
+
+
+class Scans(_Counted):
+    """Shows how far a log of scans is mapped, and the map; see `_Counted`.
+
+    survey: what the scans are added to.
+    """
+
+    def __init__(self, scans: int, survey: Survey, doing: str = "") -> None:
+        super().__init__(scans, "scans", doing)
+        self._survey = survey
+        self._plan = GrowingPlan(CELL, GROWS)
+
+    def _show(self, done: int, said: str) -> None:
         self._plan.follow(self._survey)
         grid = self._plan.grid()
-        free = grid.free_area
-        words = Text(f"{said}, {free:.0f} square metres known", style="bold", no_wrap=True)
-        head = Group(words, ProgressBar(total=self._scans, completed=done, width=BAR))
+        head = self._head(done, f"{said}, {grid.free_area:.0f} square metres known")
         poses = self._survey.mapper.poses
         self._display.show(head, grid, Overlay(poses, poses[-1]))
 
 
+class Turns(_Counted):
+    """Shows how far a log of clouds is mapped; see `_Counted`."""
+
+    def __init__(self, turns: int) -> None:
+        super().__init__(turns, "turns of the lidar")
+
+
 def _known(now: float, mapping: Mapping) -> str:
-    return f"{now:7.1f} s  {mapping.known:.1f} square metres known, {mapping.loops} loops"
+    return (
+        f"{now:7.1f} s  {mapping.known:.1f} square metres known, {counted(mapping.loops, 'loop')}"
+    )

@@ -12,7 +12,7 @@ from momantu_skills.mapping.logs.log import LoggedScan
 from rosbags import rosbag1, rosbag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Pose2D, Transform
 from tests.skills.mapping.walls import ANGLES, REACH
 
 STORE1, STORE2 = get_typestore(Stores.ROS1_NOETIC), get_typestore(Stores.ROS2_HUMBLE)
@@ -60,13 +60,24 @@ def _turn(yaw: float) -> tuple[str, dict[str, Any]]:
 
 
 def frame(
-    parent: str, child: str, stamp: float, pose: Pose2D, topic: str = "/tf", *, tilted: bool = False
+    parent: str,
+    child: str,
+    stamp: float,
+    pose: Pose2D | Transform,
+    topic: str = "/tf",
+    *,
+    tilted: bool = False,
 ) -> Message:
-    """A transform; tilted: by 60 degrees about y."""
-    turn = _turn(pose.yaw)
+    """A transform, 0.2 m high if it is one in the plane; tilted: by 60 degrees about y."""
+    there = pose if isinstance(pose, Transform) else pose.transform(0.2)
     if tilted:
-        turn = turn[0], {"x": 0.0, "y": 0.5, "z": 0.0, "w": math.sqrt(0.75)}
-    transform = {"translation": _vector("Vector3", pose.x, pose.y, 0.2), "rotation": turn}
+        there = Transform(there.position, (math.sqrt(0.75), 0.0, 0.5, 0.0))
+    x, y, z = (float(value) for value in there.position)
+    turn = dict(zip("wxyz", (float(value) for value in there.quaternion), strict=True))
+    transform = {
+        "translation": _vector("Vector3", x, y, z),
+        "rotation": ("geometry_msgs/msg/Quaternion", turn),
+    }
     stamped = {
         "header": header(parent, stamp),
         "child_frame_id": child,

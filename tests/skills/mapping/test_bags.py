@@ -179,9 +179,9 @@ def test_poses_that_are_none_are_left_out(x, w, tmp_path) -> None:
     log = read_log(ros2(tmp_path / "one", messages))
     assert len(log.scans) == len(WAY)
     assert all(abs(each.odom_from_base.x) < 100.0 for each in log.scans)
-    assert log.notes == ("left out 1 poses whose numbers are not finite, or no pose's",)
+    assert log.notes == ("left out 1 pose whose numbers are not finite, or no pose's",)
     lost = _edited(messages, "Odometry", **_lost(x, w))
-    with pytest.raises(LogError, match=f"; {len(WAY)} poses were left out, as they are none"):
+    with pytest.raises(LogError, match=f"; {len(WAY)} poses left out, which are none"):
         read_log(ros2(tmp_path / "all", lost))
 
 

@@ -107,7 +107,7 @@ def test_a_log_that_is_cut_off_is_read_up_to_there(log):
     read = read_carmen(log(*whole, flaser(60.0)[:17]))
     assert len(read.scans) == 60
     assert read.notes == (
-        "left out 1 broken lines, the first is line 63: the line ends within the ranges",
+        "left out 1 broken line, the first is line 63: the line ends within the ranges",
     )
 
 
@@ -153,10 +153,10 @@ def test_an_empty_or_missing_file_is_said(tmp_path):
 def test_stamps_that_jitter_are_told(log):
     read = read_carmen(log(flaser(5.0), flaser(4.6, 0.1), flaser(6.0, 0.2)))
     assert len(read.scans) == 3
-    assert read.notes == ("1 scans have an earlier stamp than the one before",)
+    assert read.notes == ("1 scan has an earlier stamp than the one before",)
 
 
 def test_scans_with_another_number_of_beams_are_told(log):
     read = read_carmen(log(flaser(1.0), flaser(2.0), flaser(3.0, beams=4)))
     assert len(read.scans) == 2
-    assert read.notes == ("left out 1 scans that have not 5 beams as the others",)
+    assert read.notes == ("left out 1 scan that has not 5 beams as the others",)

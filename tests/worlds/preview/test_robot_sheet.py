@@ -120,3 +120,49 @@ def test_a_robot_that_cannot_be_simulated(
     code, said = run("fetch", "-o", tmp_path / "a.png")
     assert code == 3
     assert "simulat" in said
+
+
+BOX = """\
+momantu_robot: 1
+name: box
+parts: {box: {urdf: box.urdf}}
+mounts: {box: {on: base_footprint, xyz: [0, 0, 0.15]}}
+base_frame: base_footprint
+footprint: [[-0.25, -0.2], [0.25, -0.2], [0.25, 0.2], [-0.25, 0.2]]
+height: 0.3
+working: {stand_off: 0.38, look_off: 0.56}
+base:
+  kind: differential
+  linear: 0.8
+  angular: 1.5
+  linear_acceleration: 0.8
+  angular_acceleration: 2.0
+  drive: {force: 50, torque: 10}
+actuators: {base: {kind: base}}
+sensors: {}
+simulation: {floor_links: [body], finger_links: [], finger_friction: 1.0}
+"""
+URDF = """\
+<robot name="box"><link name="body">
+<visual><geometry>{visual}</geometry></visual>
+<collision><geometry>{collision}</geometry></collision>
+<inertial><mass value="10"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+</link></robot>
+"""
+
+
+@pytest.mark.parametrize("content", ["this is no mesh", ""])
+@pytest.mark.parametrize("role", ["visual", "collision"])
+def test_a_mesh_that_cannot_be_read_is_told_with_its_link(
+    role: str, content: str, tmp_path: Path
+) -> None:
+    shapes = dict.fromkeys(("visual", "collision"), '<box size="0.5 0.4 0.3"/>')
+    shapes[role] = '<mesh filename="body.stl"/>'
+    (tmp_path / "body.stl").write_text(content)
+    (tmp_path / "box.urdf").write_text(URDF.format(**shapes))
+    (tmp_path / "robot.yaml").write_text(BOX)
+    code, said = run(tmp_path / "robot.yaml", "-o", tmp_path / "box.png")
+    assert code == 3
+    assert f"the {role} mesh {tmp_path / 'body.stl'} of the link 'body' cannot be read" in said
+    assert "write it anew as STL" in said
+    assert not (tmp_path / "box.png").exists()

@@ -15,6 +15,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import CameraSensor, RobotDescription
 from momantu_worlds.display.chase import looking
 from momantu_worlds.preview.robot_scene import robot_episode
+from momantu_worlds.sapien.build import robot_meshes
 from momantu_worlds.sapien.sensors.camera import OPTICAL_FROM_SAPIEN
 from momantu_worlds.sapien.sensors.camera_view import ViewCamera
 from momantu_worlds.sapien.simulator import Simulator
@@ -63,15 +64,17 @@ def robot_sheet(description: RobotDescription) -> bytes:
     """A PNG: for every named pose the robot with its frames, and its first camera's view.
 
     Raises:
-        WorldError: the robot cannot be simulated, or nothing renders.
+        WorldError: the robot cannot be simulated, one of its meshes cannot be read, or nothing
+            renders.
     """
     simulator = Simulator(description, robot_episode(description), seed=0)
     try:
-        rows = [
-            (_titled(name, _pose(simulator, description, pose)), eye)
-            for name, pose in (description.named_poses or {AT_REST: {}}).items()
-            for eye in [_camera(simulator, description, pose)]
-        ]
+        with robot_meshes.drawn(description.urdf):
+            rows = [
+                (_titled(name, _pose(simulator, description, pose)), eye)
+                for name, pose in (description.named_poses or {AT_REST: {}}).items()
+                for eye in [_camera(simulator, description, pose)]
+            ]
     finally:
         simulator.close()
     sheet = _sheet(rows)

@@ -94,8 +94,18 @@ def part_points(part: CollisionPart) -> Array:
 
 
 def load_mesh(part: CollisionPart) -> coal.BVHModelBase:
-    """The mesh of a collision element, in its own frame."""
-    return coal.MeshLoader().load(str(part.mesh), np.array(part.size))
+    """The mesh of a collision element, in its own frame.
+
+    Raises:
+        ValueError: its file cannot be read.
+    """
+    try:
+        return coal.MeshLoader().load(str(part.mesh), np.array(part.size))
+    except (RuntimeError, ValueError):
+        raise ValueError(
+            f"the mesh {part.mesh} of the link {part.link!r} cannot be read; write it anew as STL, "
+            "OBJ or DAE, or take it out of the robot's URDF"
+        ) from None
 
 
 def prism(radius: float, height: float) -> Array:

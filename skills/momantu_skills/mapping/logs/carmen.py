@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from momantu_bt.formats.names import counted
 from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.mapping.logs.cleaning import alike, backwards, is_place, no_return
 from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
@@ -64,7 +65,9 @@ def read_carmen(path: Path) -> Log:
     notes = []
     if broken:
         line, why = broken[0]
-        notes.append(f"left out {len(broken)} broken lines, the first is line {line}: {why}")
+        notes.append(
+            f"left out {counted(len(broken), 'broken line')}, the first is line {line}: {why}"
+        )
     notes += backwards(
         [reading.stamp for reading in readings],
         lambda index, said, cure: LogError.at(path, readings[index].line, said, cure),

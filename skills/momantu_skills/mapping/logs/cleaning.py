@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from momantu_bt.formats.names import counted
 from momantu_bt.geometry import Array
 from momantu_skills.mapping.logs.log import LogError
 
@@ -25,10 +26,13 @@ _AT_MOST = 0.005
 """Share of beams at the greatest range from which on it means that nothing was hit."""
 
 
-def backwards(stamps: Sequence[float], error: Callable[[int, str, str], LogError]) -> list[str]:
+def backwards(
+    stamps: Sequence[float], error: Callable[[int, str, str], LogError], what: str = "scan"
+) -> list[str]:
     """A note of how many stamps are earlier than the one before, if any.
 
-    error: makes the error for the scan of an index, with what is wrong and what to do.
+    what: is stamped, in the singular. error: makes the error for the scan of an index, with what is
+    wrong and what to do.
 
     Raises:
         LogError: the clock jumps back, or goes back little by little.
@@ -40,7 +44,9 @@ def backwards(stamps: Sequence[float], error: Callable[[int, str, str], LogError
             message = f"the clock runs backwards, from {newest} to {after} s"
             raise error(index, message, "two logs in one file are two maps: split the file here")
         count += after < before
-    return [f"{count} scans have an earlier stamp than the one before"] if count else []
+    verb = "has" if count == 1 else "have"
+    said = f"{counted(count, what)} {verb} an earlier stamp than the one before"
+    return [said] if count else []
 
 
 def alike(
@@ -62,7 +68,9 @@ def alike(
             f"{path}: the scans have {min(counts)} to {max(counts)} beams, and no number is that "
             f"of most of them; expected one laser, whose scans have as many beams each"
         )
-    return same, [f"left out {others} scans that have not {usual} beams as the others"]
+    verb = "has" if others == 1 else "have"
+    said = f"left out {counted(others, 'scan')} that {verb} not {usual} beams as the others"
+    return same, [said]
 
 
 def is_place(*metres: float) -> bool:

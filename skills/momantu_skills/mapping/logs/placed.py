@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from momantu_bt.formats.names import counted
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import LaserScan
 from momantu_skills.mapping.logs.cleaning import alike, backwards, is_place, no_return
@@ -65,9 +66,12 @@ def placed(path: Path, told: Published) -> Log:
     """
     frame = plain(told.scans[0].frame)
     _check_angles(path, told.scans[0])
-    odom, base, notes = _moving(path, frame, told)
+    found_base = moving(frame, told.scans[0].stamp, told)
+    if found_base is None:
+        raise _motionless(path, frame, told)
+    odom, base, notes = found_base.odom, found_base.base, list(found_base.notes)
     if told.broken:
-        notes.append(f"left out {told.broken} poses whose numbers are not finite, or no pose's")
+        notes.append(broken_poses(told))
     scans, odd = alike(path, told.scans, lambda scan: scan.ranges.size)
     notes += odd
     stamps = [scan.stamp for scan in scans]
@@ -85,8 +89,14 @@ def placed(path: Path, told: Published) -> Log:
     if not found:
         raise LogError(f"{path}: the stamps of the scans and of {odom!r} do not overlap")
     if len(found) < len(scans):
-        notes.append(f"left out {len(scans) - len(found)} scans at whose time no odometry is told")
+        without = counted(len(scans) - len(found), "scan")
+        notes.append(f"left out {without} at whose time no odometry is told")
     return Log(tuple(found), tuple(notes))
+
+
+def broken_poses(told: Published) -> str:
+    """A note of poses that were left out."""
+    return f"left out {counted(told.broken, 'pose')} whose numbers are not finite, or no pose's"
 
 
 def _check_angles(path: Path, scan: LaserScan) -> None:
@@ -101,29 +111,42 @@ def _check_angles(path: Path, scan: LaserScan) -> None:
     )
 
 
-def _moving(path: Path, frame: str, told: Published) -> tuple[str, str, list[str]]:
-    """The frames of odometry and of the base that moves in it, and notes."""
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """The frame of odometry, that of the base which moves in it, and what was assumed, in words."""
+
+    odom: str
+    base: str
+    notes: tuple[str, ...] = ()
+
+
+def moving(frame: str, stamp: float, told: Published) -> Moving | None:
+    """Where the base of a sensor's frame moves; None: nothing tells.
+
+    Where nothing tells the sensor's mount, it is entered for `stamp`, s: in the base's middle.
+    """
     chain = told.transforms.above(frame)
     for below, above in itertools.pairwise(chain):
         if above in {plain(odom) for odom, *_ in told.odometry} or "odom" in above.lower():
-            return above, below, []
+            return Moving(above, below)
     if not told.odometry:
-        broken = f"; {told.broken} poses were left out, as they are none" if told.broken else ""
-        raise LogError(
-            f"{path}: nothing tells how the base moved: above the laser's frame are "
-            f"{' on '.join(chain)}, of which none is odometry; expected a transform to a frame "
-            f"'odom' (/tf), or messages nav_msgs/Odometry{broken}"
-        )
+        return None
     odom, base = plain(told.odometry[0][0]), plain(told.odometry[0][1])
-    for _, _, stamp, pose in told.odometry:
-        told.transforms.add(odom, base, stamp, pose)
+    for _, _, when, pose in told.odometry:
+        told.transforms.add(odom, base, when, pose)
     if base in chain:
-        return odom, base, []
-    told.transforms.add(base, frame, told.scans[0].stamp, Transform())
-    return (
-        odom,
-        base,
-        [f"nothing tells where {frame!r} sits on {base!r}; taken to be at its middle, ahead"],
+        return Moving(odom, base)
+    told.transforms.add(base, frame, stamp, Transform())
+    said = f"nothing tells where {frame!r} sits on {base!r}; taken to be at its middle, ahead"
+    return Moving(odom, base, (said,))
+
+
+def _motionless(path: Path, frame: str, told: Published) -> LogError:
+    broken = f"; {counted(told.broken, 'pose')} left out, which are none" if told.broken else ""
+    return LogError(
+        f"{path}: nothing tells how the base moved: above the laser's frame are "
+        f"{' on '.join(told.transforms.above(frame))}, of which none is odometry; expected a "
+        f"transform to a frame 'odom' (/tf), or messages nav_msgs/Odometry{broken}"
     )
 
 

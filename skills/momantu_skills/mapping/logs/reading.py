@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from momantu_bt.lazy import lazily
 from momantu_skills.mapping.logs import carmen
@@ -10,6 +11,10 @@ from momantu_skills.mapping.logs.log import Log, LogError
 
 with lazily():
     from momantu_skills.mapping.logs import bags, records
+    from momantu_skills.mapping.logs.clouds import reading as clouds
+
+if TYPE_CHECKING:
+    from momantu_skills.mapping.logs.clouds.log import CloudLog
 
 RECORD = "run.mcap"
 _ROS1, _MCAP, _SQLITE = b"#ROSBAG V", b"\x89MCAP0\r\n", b"SQLite format 3\0"
@@ -25,29 +30,51 @@ def read_log(path: Path, topic: str | None = None) -> Log:
     Raises:
         LogError: there is no such log, it cannot be read, or it holds no scans with odometry.
     """
+    if _is_bag(path):
+        return bags.read_bag(path, topic)
     if path.is_dir():
-        return _folder(path, topic)
-    head = _head(path)
-    if head.startswith(_ROS1) or path.suffix == ".bag":
-        return bags.read_bag(path, topic)
-    if head.startswith(_SQLITE) or (head.startswith(_MCAP) and _ROS2_PROFILE in head):
-        return bags.read_bag(path, topic)
-    if head.startswith(_MCAP):
+        return records.read_record(path / RECORD, topic)
+    if _head(path).startswith(_MCAP):
         return records.read_record(path, topic)
     if topic is not None:
         raise LogError(f"{path} has no topics; --scan is for bags and records")
     return carmen.read_carmen(path)
 
 
-def _folder(path: Path, topic: str | None) -> Log:
+def read_clouds(path: Path, cloud: str | None = None, imu: str | None = None) -> CloudLog:
+    """The turns of a lidar in a log, for a map in three dimensions.
+
+    cloud, imu: topics, in a bag that has several; imu `none`: without it.
+
+    Raises:
+        LogError: it is no bag of ROS, it cannot be read, or it holds no clouds.
+    """
+    if not _is_bag(path):
+        raise LogError(
+            f"{path} is no bag of ROS; in three dimensions only bags with sensor_msgs/PointCloud2 "
+            "are mapped: leave out --dimensions 3 to map its scans in the plane"
+        )
+    return clouds.read_clouds(path, cloud, imu)
+
+
+def _is_bag(path: Path) -> bool:
+    """Whether a log is a bag of ROS 1 or 2.
+
+    Raises:
+        LogError: it cannot be read, or is a folder without a log.
+    """
+    if not path.is_dir():
+        head = _head(path)
+        second = head.startswith(_SQLITE) or (head.startswith(_MCAP) and _ROS2_PROFILE in head)
+        return second or head.startswith(_ROS1) or path.suffix == ".bag"
     if (path / "metadata.yaml").exists():
-        return bags.read_bag(path, topic)
-    if (path / RECORD).exists():
-        return records.read_record(path / RECORD, topic)
-    raise LogError(
-        f"{path} is a folder without a log; expected metadata.yaml (a bag of ROS 2) or {RECORD} (a "
-        "record of `momantu-bt run --record`)"
-    )
+        return True
+    if not (path / RECORD).exists():
+        raise LogError(
+            f"{path} is a folder without a log; expected metadata.yaml (a bag of ROS 2) or "
+            f"{RECORD} (a record of `momantu-bt run --record`)"
+        )
+    return False
 
 
 def _head(path: Path) -> bytes:

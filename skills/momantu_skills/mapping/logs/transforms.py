@@ -5,10 +5,14 @@ from __future__ import annotations
 from bisect import bisect_right, insort
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from momantu_bt.geometry import Transform
 
 LONGEST_GAP = 1.5
 """Time between two transforms that is bridged by an even motion, s."""
+STILL = 1e-3
+"""Motion below which a frame counts as fixed, m and rad."""
 
 
 @dataclass(slots=True)
@@ -53,6 +57,16 @@ class Transforms:
             return None
         (t0, _, before), (t1, _, later) = poses[after - 1 : after + 1]
         return _between(before, later, (stamp - t0) / (t1 - t0)) if t1 - t0 < LONGEST_GAP else None
+
+    def still(self, frame: str) -> bool:
+        """Whether a frame, which sits on another one, never moves on it: by 1 mm and 1 mrad."""
+        poses = self._edges[plain(frame)].poses
+        first = poses[0][2]
+        return all(
+            float(np.linalg.norm(pose.position - first.position)) < STILL
+            and pose.angle_to(first) < STILL
+            for _, _, pose in poses
+        )
 
     def mounted(self, target: str, frame: str, stamp: float) -> Transform:
         """`target_from_frame` as last told at a time; target: the frame, or one above it."""

@@ -152,6 +152,11 @@ class CloudMapper:
         return self.poses[-1] @ self._turns[-1][2]
 
     @property
+    def followed(self) -> Transform:
+        """Where the base is as one match after the other tells: loops do not move it."""
+        return self._now
+
+    @property
     def way(self) -> float:
         """The way until the newest kept turn, m."""
         return self._ways[-1] if self._ways else 0.0

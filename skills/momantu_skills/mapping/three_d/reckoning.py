@@ -33,7 +33,9 @@ _SPAN = 0.2
 class Reckoning:
     """Follows odometry and IMU; its own frame, `start`, lies where the base was at first."""
 
-    def __init__(self, base_from_imu: Transform) -> None:
+    def __init__(self, base_from_imu: Transform, *, measured: bool = True) -> None:
+        """Begin without a pose. measured: odometry is, so that it tells when the base rests."""
+        self._measured = measured
         self._turn, self._lever = base_from_imu.rotation, base_from_imu.position
         self._poses: deque[tuple[float, Transform]] = deque()
         self._forces: deque[tuple[float, Array]] = deque()
@@ -42,43 +44,55 @@ class Reckoning:
         self._resting = 0
         self._bias = np.zeros(3)
 
-    def add(self, stamp: float, odom_from_base: Transform, imu: ImuReading) -> None:
-        """Go on to `stamp`, with the pose that odometry has then and the IMU's newest samples."""
-        new = imu.times > self._sampled
-        self._sampled = float(imu.times[-1])
-        rates = imu.rates[new] @ self._turn.T
-        for time, force in zip(imu.times[new], imu.forces[new] @ self._turn.T, strict=True):
-            self._forces.append((float(time), force))
+    def add(self, stamp: float, odom_from_base: Transform, imu: ImuReading | None) -> None:
+        """Go on to `stamp`, with the pose that odometry has then and the IMU's newest samples.
+
+        Without new samples, odometry tells how the base turned.
+        """
+        times, rates = self._sensed(imu)
         before, self._odometry = self._odometry, odom_from_base
         if before is None:
             self._poses.append((stamp, Transform()))
             return
         step = before.inverse() @ odom_from_base
-        if np.linalg.norm(step.position) + before.angle_to(odom_from_base) < RESTING:
+        moved = float(np.linalg.norm(step.position)) + before.angle_to(odom_from_base)
+        if self._measured and moved < RESTING:
             self._rest(rates)
-        self._go(stamp, imu.times[new], rates - self._bias, step.position)
+        self._go(stamp, times, rates - self._bias, step)
         while self._poses[0][0] < stamp - KEPT:
             self._poses.popleft()
         while self._forces and self._forces[0][0] < stamp - _SPAN:
             self._forces.popleft()
+
+    def _sensed(self, imu: ImuReading | None) -> tuple[Array, Array]:
+        """Times (k,) and rates (k, 3) of the new samples, in base; keeps their forces."""
+        if imu is None:
+            return np.zeros(0), np.zeros((0, 3))
+        new = imu.times > self._sampled
+        self._sampled = float(imu.times[-1])
+        for time, force in zip(imu.times[new], imu.forces[new] @ self._turn.T, strict=True):
+            self._forces.append((float(time), force))
+        return imu.times[new], imu.rates[new] @ self._turn.T
 
     def _rest(self, rates: Array) -> None:
         for rate in rates:
             self._resting = min(self._resting + 1, MOST_RESTING)
             self._bias = self._bias + (rate - self._bias) / self._resting
 
-    def _go(self, stamp: float, times: Array, rates: Array, step: Array) -> None:
-        """Turn from sample to sample, evenly along the way; without samples straight on."""
+    def _go(self, stamp: float, times: Array, rates: Array, step: Transform) -> None:
+        """Turn from sample to sample, evenly along the way; without samples as the step does."""
         begin, last = self._poses[-1]
         if stamp <= begin:
             return
-        way = last.rotation @ step
+        if not len(rates):
+            self._poses.append((stamp, last @ step))
+            return
+        way = last.rotation @ step.position
         turned, at = last.quaternion, begin
         ends = [*(float(time) for time in times if time < stamp), stamp]
         for number, end in enumerate(ends):
-            if len(rates):
-                rate = rates[min(number, len(rates) - 1)]
-                turned = quaternion_product(turned, _turned(rate * (end - at)))
+            rate = rates[min(number, len(rates) - 1)]
+            turned = quaternion_product(turned, _turned(rate * (end - at)))
             at = end
             share = (end - begin) / (stamp - begin)
             self._poses.append((end, Transform(last.position + share * way, turned)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from momantu_bt.geometry import Transform
 from momantu_bt.messages import ImuReading, PointCloud
+from momantu_skills.mapping.three_d.config import CloudConfig
 from momantu_skills.mapping.three_d.mapper import CloudMapper
 from momantu_skills.mapping.three_d.reckoning import Reckoning, straightened
 
@@ -13,16 +14,24 @@ from momantu_skills.mapping.three_d.reckoning import Reckoning, straightened
 class CloudSurvey:
     """Straightens turns by the base's motion, and gives them to a mapper.
 
-    start: `map_from_base` at the first turn.
+    start: `map_from_base` at the first turn. measured: there is odometry; if not, `move` is told
+    what is expected.
     """
 
-    def __init__(self, base_from_imu: Transform, start: Transform) -> None:
-        self.mapper = CloudMapper(start=start)
+    def __init__(
+        self,
+        base_from_imu: Transform,
+        start: Transform,
+        config: CloudConfig | None = None,
+        *,
+        measured: bool = True,
+    ) -> None:
+        self.mapper = CloudMapper(config, start)
         self.base_from_lidar = Transform()
-        self._reckoning = Reckoning(base_from_imu)
+        self._reckoning = Reckoning(base_from_imu, measured=measured)
         self._last: Transform | None = None
 
-    def move(self, stamp: float, odom_from_base: Transform, imu: ImuReading) -> None:
+    def move(self, stamp: float, odom_from_base: Transform, imu: ImuReading | None) -> None:
         """Follow the base to `stamp`; see `Reckoning.add`."""
         self._reckoning.add(stamp, odom_from_base, imu)
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from momantu_skills.navigation.map.costmap import Costmap
-from momantu_skills.navigation.map.fields import Field
+if TYPE_CHECKING:
+    from momantu_skills.navigation.map.costmap import Costmap
+    from momantu_skills.navigation.map.fields import Field
 
 UNKNOWN_COST = 3.0
 """Cost of a metre of floor that a growing map does not know yet, relative to one that it does: a

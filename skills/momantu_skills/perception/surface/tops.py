@@ -12,7 +12,7 @@ from momantu_bt.detector import View
 from momantu_bt.geometry import Array, Pose2D, Transform, wrap_angle
 from momantu_bt.world import Surface
 from momantu_skills.perception.geometry.grids import Grid, closed, largest_component, opened
-from momantu_skills.perception.geometry.rectangles import smallest_rectangle
+from momantu_skills.perception.geometry.rectangles import TRIM, smallest_rectangle
 from momantu_skills.perception.surface.planes import PlaneConfig, find_plane
 
 PLANE = PlaneConfig(inlier=0.015, cell=0.03)
@@ -23,6 +23,8 @@ THIN = 2
 """Patches at most twice this many cells wide are edges of walls and the like, not tops."""
 LEAST = 0.10
 """Least visible area of a top, m2."""
+EVEN = 0.01
+"""Edge of the cells of which one point each tells how far a top reaches, m."""
 FILLED = 0.55
 """Least share of its rectangle that is seen of a whole top; what stands on it hides the rest."""
 UPRIGHT_CELL, UPRIGHT = 0.05, 0.10
@@ -95,10 +97,21 @@ def _top(flat: Array, height: float) -> Top | None:
     area = float(wide.sum()) * PLANE.cell**2
     if area < LEAST:
         return None
-    around = smallest_rectangle(flat[wide.ravel()[grid.cells(flat)]])
+    around = smallest_rectangle(_even(flat[wide.ravel()[grid.cells(flat)]]))
     x, y = (float(v) for v in around.centre)
-    size = float(around.size[0]), float(around.size[1])
+    whole = around.size / (1.0 - 2.0 * TRIM / 100.0)
+    size = float(whole[0]), float(whole[1])
     return Top(Pose2D(x, y, around.yaw), size, height, min(area, size[0] * size[1]))
+
+
+def _even(flat: Array) -> Array:
+    """One of the points (n, 2) in each cell: near ones are denser, and would outweigh far edges.
+
+    The rectangle around them leaves out a share of them at each side, for the noise; of an even
+    patch that is the same share of its edge.
+    """
+    cells = np.floor(flat / EVEN).astype(np.int64)
+    return np.asarray(flat[np.unique(cells, axis=0, return_index=True)[1]])
 
 
 def is_whole(top: Top, surface: Surface) -> bool:

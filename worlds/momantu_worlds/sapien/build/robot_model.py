@@ -13,6 +13,7 @@ from sapien.wrapper.urdf_loader import URDFLoader
 
 from momantu_bt.geometry import Array
 from momantu_bt.robot import ActuatorKind, Cuts, RobotDescription, SimulationModel
+from momantu_worlds.sapien.build import robot_meshes
 from momantu_worlds.sapien.build.cells import convex_cells
 from momantu_worlds.sapien.build.collision_filter import FLOOR_BIT, ignore_bits
 from momantu_worlds.sapien.config import Physics
@@ -66,12 +67,15 @@ def build_robot(
     """Load the robot with its base at the origin.
 
     visuals: whether to load visual shapes; impossible in a scene without a renderer.
+
+    Raises:
+        WorldError: a mesh file cannot be read.
     """
     builder = _parse(scene, description, simulation, visuals)
     cells = {
         name: _take_cells(builder, name, cuts) for name, cuts in simulation.convex_cells.items()
     }
-    articulation = builder.build(fix_root_link=True)
+    articulation = robot_meshes.built(builder)
     for name, shapes in cells.items():
         for shape in shapes:
             articulation.find_link_by_name(name).attach(shape)
