@@ -229,9 +229,7 @@ def test_an_arm_without_usual_tables_is_told_which_it_reaches(rolling_proposal: 
     (lack,) = without(replace(rolling_proposal, reach=reach))
     assert "tables 0.1 to 0.2 m high" in lack
     assert "mounted higher" in lack
-    assert "on tables 0.1 to 0.2 m high" in "\n".join(
-        lines(replace(rolling_proposal, reach=reach))
-    )
+    assert "on tables 0.1 to 0.2 m high" in "\n".join(lines(replace(rolling_proposal, reach=reach)))
     reach = replace(rolling_proposal.reach, measured=False)
     (lack,) = without(replace(rolling_proposal, reach=reach))
     assert "no grasp on a table 0.1 to 1.2 m high" in lack

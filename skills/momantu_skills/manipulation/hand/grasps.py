@@ -156,7 +156,8 @@ def grasps_for(
     knuckles is less than between the pads, the fingers hold the object farther out. tight: those
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
-    edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
+    edges, or the rim of what they take from above, with their knuckles before their pads are
+    closed, and jam; they hold it farther out too.
     Round things slide out from between knuckles: see `Seat`. floor: of a lying object, whose grasps
     are across its axis and keep the fingers above what it lies on.
     """
@@ -169,7 +170,8 @@ def grasps_for(
     if fitting and closing is not None and not is_box:
         seat = Seat(hand, fitting[0][0] / 2, closing)
     for width, direction, top in fitting:
-        closed = closing(width) if closing is not None and (is_box or floor) else ()
+        meets = is_box or floor is not None or top  # knuckles may meet its edges before the pads
+        closed = closing(width) if closing is not None and meets else ()
         both = _Fingers(fingers, closed, seat, floor)
         if top:
             found += _from_above(thing, hand, both, direction, width)

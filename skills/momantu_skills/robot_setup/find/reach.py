@@ -214,7 +214,9 @@ def _straight(
     aside instead meets the arm. What such an arm carries upright it grasped level.
     """
     turn = _line(heading, lateral)
-    targets = np.array([turn @ _poses(distance, floor, (0.0,), (), tables) for distance in distances])
+    targets = np.array(
+        [turn @ _poses(distance, floor, (0.0,), (), tables) for distance in distances]
+    )
     flat = targets.reshape(-1, 4, 4)
     behind = flat @ Transform((-APPROACH, 0.0, 0.0)).matrix
     good = np.logical_and(*(solver.reaches(poses, SEEDS, TURN) for poses in (flat, behind)))

@@ -95,6 +95,7 @@ def _reach_lacks(reach: Reach) -> Iterator[str]:
     """Which tables the hand does not reach, why, and what to do."""
     if reach.measured and reach.tables == HEIGHTS:
         return
+    near = reach.reach[0]
     usual, tried = (f"{h[0]:g} to {h[-1]:g} m high" for h in (HEIGHTS, LADDER))
     if reach.measured:
         low, high = reach.tables[0], reach.tables[-1]
@@ -112,8 +113,9 @@ def _reach_lacks(reach: Reach) -> Iterator[str]:
             "has, and where the base stands chooses no more than one of them"
         )
     yield (
-        f"no reach: the arm brings the hand to no grasp on a table {tried}, on no side{why}. Trees "
-        "that pick or place fail; `momantu-bt robots reach` draws where the hand gets"
+        f"no reach: the arm brings the hand to no grasp on a table {tried}, on no side, {near:g} m "
+        f"or more from the base, as the nearest things stand there{why}. Trees that pick or place "
+        "fail; `momantu-bt robots reach` draws where the hand gets"
     )
 
 
