@@ -38,7 +38,8 @@ TOUCH = 0.002
 """How deep fingers closed on an object may seem to be inside it, m: less than the detection error,
 and what pads give."""
 PAD_SHARE = 0.012
-"""Length of the pads that must extend beyond the object's axis, m, so that they close on it."""
+"""Length of the pads that must extend beyond the object's axis, m, so that they close on it; of
+pads shorter than four times that a quarter of their length."""
 FACE_SHARE = 0.035
 """Overlap of the pads with a box's flat faces that a grasp needs, m, wherever the axis is: flat
 faces, unlike a cylinder's, do not slide out. More than half of a usual pad."""
@@ -250,7 +251,7 @@ def _from_side(
         tilting = TILT_PENALTY if held == back else EDGE_PENALTY
         back = held
         penalty = tilting * tilt + SWING_PENALTY * abs(share - shares[0]) * thing.size[2]
-        penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
+        penalty += BEYOND_PENALTY * max(0.0, back - beyond_axis(hand))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 
 
@@ -264,9 +265,14 @@ def _shares(thing: DetectedObject, fingers: _Fingers) -> tuple[float, ...]:
 def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share: float) -> float:
     """Largest distance of the grasp frame behind the object's axis, m; share: see PAD_SHARE."""
     if thing.shape == "cylinder":
-        return hand.pad_length / 2 - share
+        return beyond_axis(hand, share)
     along = abs(math.cos(direction)) * thing.size[0] + abs(math.sin(direction)) * thing.size[1]
     return along / 2 + hand.pad_length / 2 - FACE_SHARE
+
+
+def beyond_axis(hand: EndEffector, share: float = PAD_SHARE) -> float:
+    """How far the middle of the pads may be behind a round thing's axis, m; see PAD_SHARE."""
+    return hand.pad_length / 2 - min(share, hand.pad_length / 4)
 
 
 def setback(local: Array, hand: EndEffector, palm: Array) -> float:
