@@ -8,7 +8,6 @@ from enum import StrEnum
 
 from momantu_bt.formats.places import Place
 
-
 LOST = "this model is left out"
 """What was done about a model of which nothing can be read."""
 

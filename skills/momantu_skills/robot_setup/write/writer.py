@@ -101,8 +101,8 @@ def _reach_lacks(reach: Reach) -> Iterator[str]:
         low, high = reach.tables[0], reach.tables[-1]
         where = "higher" if low + high < HEIGHTS[0] + HEIGHTS[-1] else "lower"
         yield (
-            f"no reach to usual tables, {usual}: it grasps on tables {low:g} to {high:g} m high, and "
-            "`working.reach` holds for those. Trees that pick or place need surfaces of such "
+            f"no reach to usual tables, {usual}: it grasps on tables {low:g} to {high:g} m high, "
+            "and `working.reach` holds for those. Trees that pick or place need surfaces of such "
             f"heights, or an arm that is mounted {where}"
         )
         return
@@ -248,7 +248,8 @@ def _working(proposal: Proposal) -> Iterator[str]:
     if reach.measured:
         text = f"Measured: inverse kinematics of level and pitched grasps on tables {tables} high."
     else:
-        text = f"Guessed: no grasp on tables {LADDER[0]:g}-{LADDER[-1]:g} m high was reached beyond the footprint."
+        tables = f"{LADDER[0]:g}-{LADDER[-1]:g} m"
+        text = f"Guessed: no grasp on tables {tables} high was reached beyond the footprint."
     yield from comment(text)
     yield "working:"
     yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
