@@ -110,3 +110,19 @@ def test_views_from_far_away_are_forgotten() -> None:
     )
     seen.add(image, Transform((9.0, 0.0, 1.2)), 0.1)
     assert not seen.free(before, 0.05, 0.03)
+
+
+@pytest.mark.parametrize(
+    ("way", "turns", "kept"),
+    [(3.0, 0.5, True), (0.0, 3.0, True), (2.0, 6.0, False), (8.0, 0.0, False)],
+)
+def test_views_are_forgotten_when_odometry_has_drifted(
+    way: float, turns: float, kept: bool
+) -> None:
+    """There and back: how far the base is from where the picture was taken says nothing."""
+    seen = looks_over(2.0)
+    point = np.array([[1.0, 0.7, 1.2]])
+    assert seen.free(point, 0.04)[0]
+    for share in np.concatenate([np.linspace(0, 0.5, 50), np.linspace(0.5, 0, 50)]):
+        seen.moved(Transform.from_rpy((way * share, 0.0, 0.0), (0.0, 0.0, turns * share)))
+    assert bool(seen.free(point, 0.04)[0]) is kept

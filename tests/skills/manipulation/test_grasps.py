@@ -177,3 +177,14 @@ def test_fingers_that_close_on_a_deep_box_meet_it_with_their_pads(model: ArmMode
         local = grasp.object_from_grasp.inverse().apply(faces)
         for planes in model.fingers_at(width):
             assert (local @ planes[:, :3].T + planes[:, 3]).max(axis=1).min() >= -0.003
+
+
+def test_short_pads_still_hold_a_can_from_the_side() -> None:
+    """Innermost edges of fingers that turn are pads of 2 cm: with them a can is held too."""
+    short = HAND.model_copy(update={"pad_length": 0.02, "hand_clearance": 0.05})
+    found = grasps_for(thing("cylinder", (0.07, 0.07, 0.13)), short, PALM)
+    level = [g.object_from_grasp for g in found if abs(g.object_from_grasp.rotation[2, 0]) < 0.01]
+    assert level
+    for frame in level:
+        behind = -float(frame.position[:2] @ frame.rotation[:2, 0])
+        assert 0.0 <= behind < short.pad_length / 2

@@ -63,3 +63,18 @@ def test_hits_of_the_laser_on_a_surface_are_no_walls() -> None:
     base_from_odom = Transform((0.5, 0.0, 0.0))
     hits = np.array([(1.6, 0.2), (1.47, 0.2), (1.3, 0.2)])
     assert outreach.beside(hits, [desk], base_from_odom) == pytest.approx(hits[2:])
+
+
+@given(st.lists(COLUMNS, min_size=1, max_size=5))
+def test_a_thin_thing_in_the_cell_of_a_piece_lies_between_its_samples(
+    rows: list[tuple[float, float, float, float]],
+) -> None:
+    """The middles of pieces are looked at first, then the corners of the cell around each."""
+    pieces = outreach.cut(np.array([(x, y, low, low + high, 0.005) for x, y, low, high in rows]))
+    middles, *corners = outreach.samples(pieces)
+    assert middles[:, :2] == pytest.approx(pieces[:, :2])
+    assert len(corners) == 4
+    spread = np.array(corners)
+    assert np.ptp(spread, axis=0)[:, :2] == pytest.approx(outreach.GRID)
+    assert spread.mean(axis=0) == pytest.approx(middles)
+    assert ((middles[:, 2] > pieces[:, 2]) & (middles[:, 2] < pieces[:, 3])).all()

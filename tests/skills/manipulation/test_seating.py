@@ -122,3 +122,35 @@ def test_hands_whose_pads_face_each_other_hold_a_can_as_deep_as_they_reach(robot
     model = arm_model(robot())
     held = Seat(model.description.hand, RADIUS, model.fingers_at)
     assert held.best(0.0, model.description.hand.pad_length / 2 - 0.012) == 0.0
+
+
+def knuckled(width: float) -> list[Array]:
+    """Pads 4 cm long on knuckles that reach 15 mm farther inwards, 2 cm behind the pads."""
+    pads = fingers([(-0.02, 0.0), (0.05, 0.0), (0.05, 0.01), (-0.02, 0.01)])(width)
+    return pads + fingers([(-0.1, -0.015), (-0.04, -0.015), (-0.02, 0.0), (-0.1, 0.01)])(width)
+
+
+def test_from_above_knuckles_stay_over_the_rim() -> None:
+    size = (2 * RADIUS, 2 * RADIUS, 0.13)
+    thing = DetectedObject(
+        "can", Pose(Transform((0.8, 0.0, 0.8)), "odom", 0.0), size, "cylinder", 0.9, 0.735
+    )
+    rim = np.array([(RADIUS * c, RADIUS * s, 0.065) for c, s in _circle()])
+
+    def deepest(closing: Closing | None) -> float:
+        found = grasps_for(thing, HAND, PALM, closing=closing)
+        above = [g.object_from_grasp for g in found if g.object_from_grasp.rotation[2, 0] < -0.99]
+        assert above
+        locals_ = [frame.inverse().apply(rim) for frame in above]
+        return min(
+            float((local @ planes[:, :3].T + planes[:, 3]).max(axis=1).min())
+            for local in locals_
+            for planes in knuckled(2 * RADIUS)
+        )
+
+    assert deepest(None) < -0.006
+    assert deepest(knuckled) > -0.003
+
+
+def _circle() -> list[tuple[float, float]]:
+    return [(math.cos(a), math.sin(a)) for a in np.linspace(0, 2 * math.pi, 90)]

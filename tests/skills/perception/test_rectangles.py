@@ -49,3 +49,19 @@ def test_distances_are_to_the_boundary_and_outside_counts_only_outside() -> None
 def test_points_in_a_line_make_a_thin_rectangle() -> None:
     line = np.column_stack([np.linspace(0, 1, 50), np.zeros(50)])
     assert smallest_rectangle(line).size.min() == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("yaw", [0.0, 0.6, 2.5, -1.5])
+def test_a_box_seen_from_little_above_is_as_deep_as_it_is(share: float, yaw: float) -> None:
+    """Most points lie on the face before the camera; the top shows in rows 8 mm apart."""
+    random = np.random.default_rng(0)
+    tops = int(2500 * share)
+    wide = random.uniform(-0.055, 0.055, 2500)
+    rows = random.choice(np.arange(0.0, 0.0701, 0.008), tops) + random.uniform(0, 0.002, tops)
+    deep = np.concatenate([rows, np.zeros(2500 - tops)])
+    flat = np.column_stack([deep, wide]) + 0.0012 * random.standard_normal((2500, 2))
+    c, s = math.cos(yaw), math.sin(yaw)
+    turned = flat @ np.array([[c, s], [-s, c]])
+    found = fitted_to(smallest_rectangle(turned), turned, turned[tops:])
+    assert sorted(found.size) == pytest.approx([0.066, 0.11], abs=0.004)

@@ -15,6 +15,7 @@ from momantu_skills.robot_setup.check.robot import check_robot
 from momantu_skills.robot_setup.check_verb import check
 from momantu_skills.robot_setup.find.named import TIPS
 from momantu_skills.robot_setup.find.proposal import Proposal, propose
+from momantu_skills.robot_setup.write.summary import lines
 from momantu_skills.robot_setup.write.writer import robot_file, without
 from momantu_worlds.robots import fetch
 from typer import Typer
@@ -223,11 +224,23 @@ def test_touch_links_without_fingers(wrong: Wrong) -> None:
     assert "no-fingers" in {finding.code for finding in found}
 
 
+def test_an_arm_without_usual_tables_is_told_which_it_reaches(rolling_proposal: Proposal) -> None:
+    reach = replace(rolling_proposal.reach, tables=(0.1, 0.2))
+    (lack,) = without(replace(rolling_proposal, reach=reach))
+    assert "tables 0.1 to 0.2 m high" in lack
+    assert "mounted higher" in lack
+    assert "on tables 0.1 to 0.2 m high" in "\n".join(lines(replace(rolling_proposal, reach=reach)))
+    reach = replace(rolling_proposal.reach, measured=False)
+    (lack,) = without(replace(rolling_proposal, reach=reach))
+    assert "no grasp on a table 0.1 to 1.2 m high" in lack
+
+
 def test_working_distances_out_of_reach(wrong: Wrong, rolling_proposal: Proposal) -> None:
     near, best, far = rolling_proposal.reach.reach
     found = wrong((f"reach: [{near:g}, {best:g}, {far:g}]", "reach: [1.3, 1.4, 1.5]"))
     assert {f.code for f in found} == {"out-of-reach"}
     assert [f.severity.label for f in found] == ["error", "warning", "warning"]
+    assert all("heights at which it is reached: " in f.message for f in found)
     found = wrong(("stand_off: 0.38", "stand_off: 0.2"))
     assert only(found, "stands-in-table").severity.label == "error"
 

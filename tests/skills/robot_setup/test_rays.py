@@ -47,3 +47,12 @@ def test_fingers_to_both_sides_leave_their_distance() -> None:
     left, right = finger + np.array([0.0, 0.03, 0.0]), finger + np.array([0.0, -0.05, 0.0])
     assert opening_between([left, right], 0.02, 0.02) == pytest.approx(0.07)
     assert opening_between([left], 0.02, 0.02) is None
+
+
+def test_fingers_above_and_below_the_pads_are_found_at_their_heights() -> None:
+    """Two of three fingers stand 3 cm above and below the one that they close against."""
+    finger = np.array(list(product((-0.05, 0.05), (0.0, 0.01), (-0.01, 0.01))))
+    thumb = finger + np.array([0.0, 0.03, 0.0])
+    two = [finger + np.array([0.0, -0.05, z]) for z in (0.03, -0.03)]
+    assert opening_between([thumb, *two], 0.02, 0.02) == pytest.approx(0.07)
+    assert opening_between(two, 0.02, 0.02) is None

@@ -23,8 +23,10 @@ NEAREST, TRAVEL = 0.45, 0.5
 JOINTS = ("lift", "out", "yaw")
 
 
-def telescope(folder: Path, travel: float = TRAVEL) -> tuple[LimbSolver, Body]:
-    """A column with a telescope whose hand turns about the vertical."""
+def telescope(
+    folder: Path, travel: float = TRAVEL, heights: tuple[float, float] = (0.2, 1.2)
+) -> tuple[LimbSolver, Body]:
+    """A column with a telescope whose hand turns about the vertical, and rises between heights."""
     slide = 'velocity="1" effort="30" lower="{}" upper="{}"'
     source = folder / "given.urdf"
     source.write_text(
@@ -33,7 +35,7 @@ def telescope(folder: Path, travel: float = TRAVEL) -> tuple[LimbSolver, Body]:
         + link("carriage", box(0.05, 0.05, 0.05))
         + link("rod", box(0.05, 0.05, 0.05))
         + link("hand", box(0.05, 0.05, 0.05))
-        + joint("lift", "base", "carriage", kind="prismatic", limit=slide.format(0.2, 1.2))
+        + joint("lift", "base", "carriage", kind="prismatic", limit=slide.format(*heights))
         + joint("out", "carriage", "rod", "0.2 0 0", "1 0 0", "prismatic", slide.format(0, travel))
         + joint("yaw", "rod", "hand", "0.05 0 0", limit=slide.format(-3, 3))
         + "</robot>"
@@ -78,3 +80,18 @@ def test_a_turn_that_is_allowed_only_adds(tmp_path: Path) -> None:
     some, free = (solver.reaches(poses, 6, turn) for turn in (0.3, np.pi))
     assert not (some & ~free).any()
     assert free.sum() > some.sum()
+
+
+def test_an_arm_that_reaches_no_usual_table_is_measured_on_others(tmp_path: Path) -> None:
+    solver, body = telescope(tmp_path, heights=(0.1, 0.38))
+    found = find_reach(solver, find_stand(body))
+    assert found.measured
+    assert found.tables == (0.1, 0.2, 0.3)
+    near, _, far = found.reach
+    assert near == pytest.approx(NEAREST + APPROACH, abs=STEP)
+    assert far == pytest.approx(NEAREST + TRAVEL, abs=STEP)
+
+
+def test_an_arm_that_reaches_one_height_alone_has_no_tables(tmp_path: Path) -> None:
+    solver, body = telescope(tmp_path, heights=(0.25, 0.27))
+    assert not find_reach(solver, find_stand(body)).measured

@@ -175,3 +175,11 @@ def test_a_world_of_which_nothing_is_left_says_why(run):
     assert code == 2
     assert "nothing is left of this world: what it has is left out" in err
     assert "model://none" in err
+
+
+def test_what_a_server_has_is_to_be_fetched_and_told_first(run):
+    plugins = "<plugin name='p' filename='p.so'/>" * 12
+    code, _, err = run(plugins + "<include><uri>https://fuel.org/1.0/O/models/Hall</uri></include>")
+    assert code == 2
+    assert "gz fuel download -u 'https://fuel.org/1.0/O/models/Hall'" in err.splitlines()[1]
+    assert "by --models" in err.splitlines()[1]

@@ -8,6 +8,9 @@ from enum import StrEnum
 
 from momantu_bt.formats.places import Place
 
+LOST = "this model is left out"
+"""What was done about a model of which nothing can be read."""
+
 
 class Outcome(StrEnum):
     """What happened to an element: it was dropped, or changed."""
@@ -46,7 +49,7 @@ class Deviations:
     def lost(self, place: Place, subject: str, why: str) -> None:
         """Record that a whole model was dropped."""
         self.models_lost += 1
-        self.dropped(place, subject, why, "this model is left out")
+        self.dropped(place, subject, why, LOST)
 
     def changed(self, place: Place, subject: str, what: str, instead: str) -> None:
         """Record that something was changed."""

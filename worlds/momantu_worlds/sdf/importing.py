@@ -21,7 +21,7 @@ from momantu_worlds.sdf.body.rigid_groups import is_robot, rigid_groups
 from momantu_worlds.sdf.body.settling import settled
 from momantu_worlds.sdf.body.shaping import Shaping
 from momantu_worlds.sdf.body.wedged import held_where_wedged
-from momantu_worlds.sdf.deviations import Deviations, Outcome
+from momantu_worlds.sdf.deviations import LOST, Deviations, Outcome
 from momantu_worlds.sdf.errors import SdfError
 from momantu_worlds.sdf.mesh.assets import Assets
 from momantu_worlds.sdf.read.uris import search_folders
@@ -144,8 +144,9 @@ def _base(robot: PlacedModel) -> Transform:
 
 
 def _nothing_left(deviations: Deviations) -> str:
-    """Why there is nothing to write."""
+    """Why there is nothing to write: whole models that were lost first."""
     gone = [deviation for deviation in deviations if deviation.outcome is Outcome.DROPPED]
+    gone.sort(key=lambda deviation: deviation.instead != LOST)
     why = "".join(f"\n  {f.place}: {f.subject}: {f.what}" for f in gone[:MOST_SAID])
     return f"nothing is left of this world{': what it has is left out' + why if why else ''}"
 

@@ -38,7 +38,8 @@ TOUCH = 0.002
 """How deep fingers closed on an object may seem to be inside it, m: less than the detection error,
 and what pads give."""
 PAD_SHARE = 0.012
-"""Length of the pads that must extend beyond the object's axis, m, so that they close on it."""
+"""Length of the pads that must extend beyond the object's axis, m, so that they close on it; of
+pads shorter than four times that a quarter of their length."""
 FACE_SHARE = 0.035
 """Overlap of the pads with a box's flat faces that a grasp needs, m, wherever the axis is: flat
 faces, unlike a cylinder's, do not slide out. More than half of a usual pad."""
@@ -156,7 +157,8 @@ def grasps_for(
     knuckles is less than between the pads, the fingers hold the object farther out. tight: those
     too for which the open hand is hardly wider than the object, or its fingers hardly long enough.
     closing: gives the planes of the fingers at an opening. Fingers that turn meet a deep box's
-    edges with their knuckles before their pads are closed, and jam; they hold it farther out too.
+    edges, or the rim of what they take from above, with their knuckles before their pads are
+    closed, and jam; they hold it farther out too.
     Round things slide out from between knuckles: see `Seat`. floor: of a lying object, whose grasps
     are across its axis and keep the fingers above what it lies on.
     """
@@ -169,7 +171,8 @@ def grasps_for(
     if fitting and closing is not None and not is_box:
         seat = Seat(hand, fitting[0][0] / 2, closing)
     for width, direction, top in fitting:
-        closed = closing(width) if closing is not None and (is_box or floor) else ()
+        meets = is_box or floor is not None or top  # knuckles may meet its edges before the pads
+        closed = closing(width) if closing is not None and meets else ()
         both = _Fingers(fingers, closed, seat, floor)
         if top:
             found += _from_above(thing, hand, both, direction, width)
@@ -248,7 +251,7 @@ def _from_side(
         tilting = TILT_PENALTY if held == back else EDGE_PENALTY
         back = held
         penalty = tilting * tilt + SWING_PENALTY * abs(share - shares[0]) * thing.size[2]
-        penalty += BEYOND_PENALTY * max(0.0, back - (hand.pad_length / 2 - PAD_SHARE))
+        penalty += BEYOND_PENALTY * max(0.0, back - beyond_axis(hand))
         yield Grasp(Transform.from_rotation(rotation, centre - back * x), width, penalty)
 
 
@@ -262,9 +265,14 @@ def _shares(thing: DetectedObject, fingers: _Fingers) -> tuple[float, ...]:
 def _farthest(thing: DetectedObject, hand: EndEffector, direction: float, share: float) -> float:
     """Largest distance of the grasp frame behind the object's axis, m; share: see PAD_SHARE."""
     if thing.shape == "cylinder":
-        return hand.pad_length / 2 - share
+        return beyond_axis(hand, share)
     along = abs(math.cos(direction)) * thing.size[0] + abs(math.sin(direction)) * thing.size[1]
     return along / 2 + hand.pad_length / 2 - FACE_SHARE
+
+
+def beyond_axis(hand: EndEffector, share: float = PAD_SHARE) -> float:
+    """How far the middle of the pads may be behind a round thing's axis, m; see PAD_SHARE."""
+    return hand.pad_length / 2 - min(share, hand.pad_length / 4)
 
 
 def setback(local: Array, hand: EndEffector, palm: Array) -> float:

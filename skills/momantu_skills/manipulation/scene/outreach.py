@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -76,6 +77,17 @@ def cut(columns: Array) -> Array:
     pieces[:, 2] += (np.arange(len(pieces)) - first) * height
     pieces[:, 3] = pieces[:, 2] + height
     return np.asarray(pieces)
+
+
+def samples(pieces: Array) -> Iterator[Array]:
+    """Points (n, 3) of pieces (n, 5), set by set: middles, then corners of cells around them.
+
+    A picture may pass beside the middle of a piece and yet show what stands in its cell: the thin
+    back of a chair, where the base is a centimetre or two beside where it believes to be.
+    """
+    heights = pieces[:, 2:4].mean(axis=1)
+    for dx, dy in ((0.0, 0.0), *product((-GRID / 2, GRID / 2), repeat=2)):
+        yield np.column_stack([pieces[:, 0] + dx, pieces[:, 1] + dy, heights])
 
 
 def beside(points: Array, supports: Sequence[Support], base_from_odom: Transform) -> Array:

@@ -350,9 +350,10 @@ class Scene:
     def not_free(self, state: RobotState, columns: Array) -> Array:
         """See `BodyScene.not_free`."""
         pieces = outreach.cut(columns)
-        middles = np.column_stack([pieces[:, :2], pieces[:, 2:4].mean(axis=1)])
-        there = state.odom_from_base.apply(middles)
-        free = self.seen_space.free(there, HALF_DIAGONAL * outreach.GRID, DOUBT)
+        free = np.ones(len(pieces), dtype=np.bool_)
+        for points in outreach.samples(pieces):
+            there = state.odom_from_base.apply(points[free])
+            free[free] = self.seen_space.free(there, HALF_DIAGONAL * outreach.GRID, DOUBT)
         return np.asarray(pieces[~free])
 
     def near_columns(self, state: RobotState) -> bool:

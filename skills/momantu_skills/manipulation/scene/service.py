@@ -58,6 +58,7 @@ class PlanningSceneService(Service):
     def update(self, robot: Robot, now: float) -> None:
         """Check again whether the object is still held, and weigh the empty hand."""
         self._state, held = robot.state(), self.held
+        self.scene.seen_space.moved(self._state.odom_from_base)
         self.holding.judge(self._state)
         if held is not None and self.held is None:
             self._fell(held)

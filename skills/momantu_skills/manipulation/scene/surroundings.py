@@ -49,8 +49,12 @@ STRIDE = 4
 KEPT = 12
 """Number of pictures whose views are kept: those of a search and of two views of a grasp."""
 FAR_VIEW = 3.0
-"""Distance between two pictures above which the older one is forgotten, m, because odometry has
-drifted since."""
+"""Distance between two pictures above which the older one is forgotten, m: it shows elsewhere."""
+DRIFT = (0.011, 0.02)
+"""How far odometry may be off for each metre driven and each radian turned, m, at arm's length."""
+DRIFTED = 0.08
+"""Drift of odometry after which a picture is forgotten, m: where it shows free space, there may be
+the thin back of a chair."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,6 +275,8 @@ class _View:
     shape: tuple[int, int]
     nearest: float
     depth: NDArray[np.float32]
+    drift: float
+    """`SeenSpace.drift` when the picture was taken, m."""
 
     @property
     def camera(self) -> Array:
@@ -323,14 +329,29 @@ class SeenSpace:
 
     def __init__(self) -> None:
         self._views = deque[_View](maxlen=KEPT)
+        self._base: Transform | None = None
+        self.drift = 0.0
+        """How far odometry may have drifted so far, m."""
         self.count = 0
         """Number of pictures added so far."""
+
+    def moved(self, odom_from_base: Transform) -> None:
+        """Follow the base; forget the pictures that odometry no longer places well enough."""
+        before, self._base = self._base, odom_from_base
+        if before is None or before == odom_from_base:
+            return
+        way = float(np.linalg.norm(odom_from_base.position - before.position))
+        self.drift += DRIFT[0] * way + DRIFT[1] * before.angle_to(odom_from_base)
+        if self._views and self.drift - self._views[0].drift > DRIFTED:
+            kept = (view for view in self._views if self.drift - view.drift <= DRIFTED)
+            self._views = deque(kept, maxlen=KEPT)
 
     def add(self, image: CameraImage, odom_from_camera: Transform, nearest: float) -> None:
         """Add a picture's view. nearest: least depth that the camera measures, m."""
         height, width = image.depth.shape
         depth = np.array(image.depth[::STRIDE, ::STRIDE])
-        view = _View(odom_from_camera, image.intrinsics, (height, width), nearest, depth)
+        size = (height, width)
+        view = _View(odom_from_camera, image.intrinsics, size, nearest, depth, self.drift)
         here = odom_from_camera.position[:2]
         near = [v for v in self._views if np.linalg.norm(v.camera[:2] - here) < FAR_VIEW]
         self._views = deque([*near, view], maxlen=KEPT)

@@ -62,7 +62,9 @@ def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:
 
     The outermost points are outermost because of noise, while the mean of a face is accurate. The
     side with the most points determines the rotation; sides without points stay at the extreme of
-    all points.
+    all points. Opposite a face it is the extreme of the points beyond that face: of a box that is
+    seen from a little above its top, a tenth of the points lie there, and `TRIM` of all would take
+    much of them.
     """
     turn = _turn_of_fullest_side(rectangle, faces)
     yaw = rectangle.yaw + turn
@@ -71,11 +73,24 @@ def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:
     for axis in (0, 1):
         other = 1 - axis
         between = (own[:, other] > low[other] + CORNER) & (own[:, other] < high[other] - CORNER)
+        faced = []
         for limits in (low, high):
             face = own[between & (np.abs(own[:, axis] - limits[axis]) < NEAR), axis]
-            if len(face) >= LEAST_FACE:
+            faced.append(len(face) >= LEAST_FACE)
+            if faced[-1]:
                 limits[axis] = np.median(face)
+        if faced in ([True, False], [False, True]):
+            _widen(low, high, axis, points @ _axes(yaw), upwards=faced[0])
     return _rectangle(yaw, low, high)
+
+
+def _widen(low: Array, high: Array, axis: int, own: Array, *, upwards: bool) -> None:
+    """Move the far limit of an axis to the extreme of the points (n, 2) beyond the near face."""
+    along = own[:, axis]
+    if upwards and len(beyond := along[along > low[axis] + NEAR]) >= LEAST_FACE:
+        high[axis] = max(high[axis], np.percentile(beyond, 100.0 - TRIM))
+    elif not upwards and len(beyond := along[along < high[axis] - NEAR]) >= LEAST_FACE:
+        low[axis] = min(low[axis], np.percentile(beyond, TRIM))
 
 
 def _turn_of_fullest_side(rectangle: Rectangle, faces: Array) -> float:

@@ -13,7 +13,7 @@ from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import RobotDescription
 from momantu_skills.robot_setup.find.base import Stand
-from momantu_skills.robot_setup.find.reach import reached
+from momantu_skills.robot_setup.find.reach import LADDER, reached
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
 from momantu_skills.robot_setup.urdf.body import Body, placed
 from momantu_skills.robot_setup.urdf.rays import opening_between
@@ -251,11 +251,15 @@ def check_reach(description: RobotDescription, stand: Stand) -> Iterator[Finding
         ("nearest", "best", "farthest"), working.reached, heights, strict=True
     ):
         if share < (0.5 if which == "best" else HEIGHT_SHARE):
+            at = np.array([distance])
+            others = [z for z in LADDER if reached(solver, at, stand.floor, *line, (z,))[1][0] > 0]
+            told = ", ".join(f"{z:g}" for z in others) or "none from 0.1 to 1.2"
             yield FindingAtKeys(
                 Severity.ERROR if which == "best" else Severity.WARNING,
                 "out-of-reach",
                 f"the {which} distance, {distance:g} m, is reached on {share:.0%} of the tables "
-                "0.4 to 0.8 m high",
-                "`momantu-bt robots setup` measures how far the arm reaches",
+                f"0.4 to 0.8 m high; heights at which it is reached: {told} m",
+                "let what it brings stand on tables of such heights, mount the arm elsewhere, or "
+                "measure again how far the arm reaches: `momantu-bt robots setup`",
                 ("working", "reach"),
             )

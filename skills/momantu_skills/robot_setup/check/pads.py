@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from momantu_bt.findings import FindingAtKeys
 from momantu_bt.formats.problems import Severity
-from momantu_skills.manipulation.hand.grasps import OPENING, PAD_SHARE
+from momantu_skills.manipulation.hand.grasps import OPENING, beyond_axis
 from momantu_skills.manipulation.hand.seating import Seat
 from momantu_skills.manipulation.model.arm_model import ArmModel
 
@@ -21,7 +21,7 @@ def check_pads(model: ArmModel) -> Iterator[FindingAtKeys]:
     """Pads that touch a can with an edge, or from which it slides out."""
     hand = model.description.hand
     width = min(USUAL, hand.max_width - OPENING)
-    farthest = hand.pad_length / 2 - PAD_SHARE
+    farthest = beyond_axis(hand)
     if width <= 0.0 or not model.open_fingers:
         return
     seat = Seat(hand, width / 2, model.fingers_at)

@@ -8,6 +8,7 @@ from typing import Any
 
 from momantu_skills.robot_setup.find.matrix import Why
 from momantu_skills.robot_setup.find.proposal import Proposal
+from momantu_skills.robot_setup.find.reach import HEIGHTS
 from momantu_skills.robot_setup.write.sensor_writer import sensor_names
 from momantu_skills.robot_setup.write.writer import base_frame
 
@@ -65,7 +66,9 @@ def _reach(proposal: Proposal) -> Iterator[str]:
     off = f"stands {reach.stand_off:g} m off"
     turned = f", {math.degrees(reach.heading):.0f} deg from ahead" if reach.heading else ""
     beside = f", {reach.lateral:g} m to the left" if reach.lateral else ""
-    yield f"reach        {near:g} to {far:g} m{turned}{beside}, best {best:g}; {off}{sure}"
+    low, high = reach.tables[0], reach.tables[-1]
+    on = "" if reach.tables == HEIGHTS else f", on tables {low:g} to {high:g} m high"
+    yield f"reach        {near:g} to {far:g} m{turned}{beside}, best {best:g}{on}; {off}{sure}"
     if reach.measured and reach.freedoms < 6:
         yield (
             f"             the arm moves the hand in {reach.freedoms} of six directions and turns: "

@@ -13,7 +13,7 @@ from momantu_bt.geometry import Transform
 from momantu_skills.robot_setup.find.matrix import Why
 from momantu_skills.robot_setup.find.named import TIPS
 from momantu_skills.robot_setup.find.proposal import Proposal
-from momantu_skills.robot_setup.find.reach import HEIGHTS, Reach
+from momantu_skills.robot_setup.find.reach import HEIGHTS, LADDER, Reach
 from momantu_skills.robot_setup.write.arm_writer import (
     actuator_lines,
     end_effector_lines,
@@ -73,8 +73,8 @@ def without(proposal: Proposal) -> tuple[str, ...]:
             "no hand: no two links were found that open and close against each other. It moves "
             "its arm, and trees that pick or place are refused"
         )
-    if proposal.grasp is not None and not proposal.reach.measured:
-        found.append(_no_reach(proposal.reach))
+    if proposal.grasp is not None:
+        found += _reach_lacks(proposal.reach)
     found += _weak_holds(proposal)
     kinds = {sensor.kind for sensor in proposal.sensors}
     if "camera" not in kinds:
@@ -91,17 +91,31 @@ def _weak_holds(proposal: Proposal) -> Iterator[str]:
         yield f"no level `carry`: {TIPS}, and trees that carry may fail"
 
 
-def _no_reach(reach: Reach) -> str:
-    """Why the hand reaches no grasp."""
+def _reach_lacks(reach: Reach) -> Iterator[str]:
+    """Which tables the hand does not reach, why, and what to do."""
+    if reach.measured and reach.tables == HEIGHTS:
+        return
+    near = reach.reach[0]
+    usual, tried = (f"{h[0]:g} to {h[-1]:g} m high" for h in (HEIGHTS, LADDER))
+    if reach.measured:
+        low, high = reach.tables[0], reach.tables[-1]
+        where = "higher" if low + high < HEIGHTS[0] + HEIGHTS[-1] else "lower"
+        yield (
+            f"no reach to usual tables, {usual}: it grasps on tables {low:g} to {high:g} m high, "
+            "and `working.reach` holds for those. Trees that pick or place need surfaces of such "
+            f"heights, or an arm that is mounted {where}"
+        )
+        return
     why = ""
     if reach.freedoms < 6:
         why = (
             f": it moves the hand in {reach.freedoms} of the six directions and turns that a grasp "
             "has, and where the base stands chooses no more than one of them"
         )
-    return (
-        f"no reach: the arm brings the hand to no grasp on a table, on no side{why}. Trees that "
-        "pick or place fail"
+    yield (
+        f"no reach: the arm brings the hand to no grasp on a table {tried}, on no side, {near:g} m "
+        f"or more from the base, as the nearest things stand there{why}. Trees that pick or place "
+        "fail; `momantu-bt robots reach` draws where the hand gets"
     )
 
 
@@ -230,10 +244,11 @@ def _working(proposal: Proposal) -> Iterator[str]:
         yield f"  stand_off: {number(reach.stand_off)}    # the footprint's front and 13 cm"
         yield f"  look_off: {number(reach.look_off)}"
         return
-    tables = f"{HEIGHTS[0]:g}-{HEIGHTS[-1]:g} m"
+    tables = f"{reach.tables[0]:g}-{reach.tables[-1]:g} m"
     if reach.measured:
         text = f"Measured: inverse kinematics of level and pitched grasps on tables {tables} high."
     else:
+        tables = f"{LADDER[0]:g}-{LADDER[-1]:g} m"
         text = f"Guessed: no grasp on tables {tables} high was reached beyond the footprint."
     yield from comment(text)
     yield "working:"

@@ -73,6 +73,12 @@ class Library:
             if is_there(candidate):
                 return candidate
         looked = ", ".join(str(f) for f in self.folders[:MOST_NAMED])
+        if scheme in ("http", "https"):
+            raise MissingFile(
+                f"{uri!r} is on a server, and no folder of its name is in {looked}; nothing is "
+                f"downloaded: fetch it yourself (`gz fuel download -u '{uri}'`), then name the "
+                "folder in which it lies by --models"
+            )
         raise MissingFile(f"{uri!r} is not in {looked}; name its folder by --models")
 
     def _relative(self, path: str, place: Place) -> Iterator[Path]:
