@@ -57,6 +57,11 @@ def smallest_rectangle(points: Array) -> Rectangle:
     return _rectangle(yaw, *_span(points, yaw))
 
 
+def rectangle_at(points: Array, yaw: float) -> Rectangle:
+    """The smallest rectangle around points (n, 2) with a side at a yaw, rad, reduced by TRIM."""
+    return _rectangle(yaw, *_span(points, yaw))
+
+
 def fitted_to(rectangle: Rectangle, points: Array, faces: Array) -> Rectangle:
     """Rotate the rectangle and move its sides to fit points (n, 2) on faces (m, 2).
 

@@ -15,6 +15,9 @@ SAME = 0.035
 AGREEING = 0.2
 """Relative difference of sizes up to which they are averaged."""
 
+WHOLE = 0.5
+"""A view that shows a mug's handle is taken from this share of the cells of the fullest view on."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
@@ -75,10 +78,14 @@ def _one(group: Sequence[Solid]) -> Solid:
 
 
 def _best(group: Sequence[Solid]) -> Solid:
-    """The view of the likeliest category that shows most; of mugs, one that shows the handle."""
+    """The view of the likeliest category that shows most; of mugs, one that shows the handle.
+
+    A view that shows a handle but little of its mug says little of the mug's place and size.
+    """
     chance: dict[str, float] = {}
     for solid in group:
         chance[solid.category] = chance.get(solid.category, 0.0) + solid.sure * solid.cells
     category = max(chance, key=lambda name: chance[name])
     like = [solid for solid in group if solid.category == category]
-    return max(like, key=lambda solid: (solid.handle, solid.cells))
+    enough = WHOLE * max(solid.cells for solid in like)
+    return max(like, key=lambda solid: (solid.handle and solid.cells >= enough, solid.cells))

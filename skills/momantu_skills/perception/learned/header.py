@@ -9,7 +9,7 @@ from typing import Any
 from momantu_bt.categories import Symmetry, categories_from
 from momantu_bt.detector import DetectorError
 
-KIND, VERSION = "momantu_bt learned detector", 2
+KIND, VERSION = "momantu_bt learned detector", 3
 """What the file says it is; the number changes with the network and with the metadata."""
 LONGEST = 1_000_000
 """Most bytes of a header."""

@@ -21,6 +21,8 @@ COORDINATES, OFFSETS = 3, 3
 """Numbers of a cell: where it is on its thing, and where the middle of its thing is."""
 WIDTHS = (16, 32, 64, 96)
 """Channels of the levels, from fine to coarse."""
+DEEP = 2
+"""Blocks of the coarsest level after those on the way down."""
 GROUP = 8
 """Channels that are normalised together: batches are small."""
 
@@ -59,7 +61,8 @@ class Network(nn.Module):
         self.down = nn.ModuleList(
             Block(before, after) for before, after in pairwise((WIDTHS[0], *WIDTHS))
         )
-        self.deep = Block(WIDTHS[-1], WIDTHS[-1])
+        self.more = nn.ModuleList(Block(width, width) for width in WIDTHS[1:])
+        self.deep = nn.ModuleList(Block(WIDTHS[-1], WIDTHS[-1]) for _ in range(DEEP))
         self.narrow = nn.ModuleList(nn.Conv2d(coarse, fine, 1) for fine, coarse in pairwise(WIDTHS))
         self.up = nn.ModuleList(Block(width, width) for width in WIDTHS[:-1])
         self.head = nn.Conv2d(WIDTHS[0], len(self.classes) + COORDINATES + OFFSETS, 1)
@@ -75,8 +78,11 @@ class Network(nn.Module):
             if number:
                 x = nn.functional.max_pool2d(x, 2)
             x = block(x)
+            if number:
+                x = self.more[number - 1](x)
             levels.append(x)
-        x = self.deep(x)
+        for block in self.deep:
+            x = block(x)
         for number in reversed(range(len(self.up))):
             finer = nn.functional.interpolate(self.narrow[number](x), scale_factor=2.0)
             x = self.up[number](finer + levels[number])

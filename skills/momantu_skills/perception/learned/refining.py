@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from momantu_bt.categories import Symmetry
-from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle, rotation_between
-from momantu_skills.perception.geometry.rectangles import fitted_to, smallest_rectangle
+from momantu_bt.geometry import Array, Transform, quaternion_from_axis_angle
 from momantu_skills.perception.geometry.revolution import fit_revolution
+from momantu_skills.perception.learned import boxes
+from momantu_skills.perception.learned.boxes import Sides
 from momantu_skills.perception.learned.solids import Solid
 
 MARGIN = 0.015
@@ -33,8 +34,6 @@ WIDEST = 90.0
 """Percentile of the radii that is the widest part's, of what is not as wide everywhere."""
 ENDS = 2.0
 """Per cent of the points that noise puts beyond each end."""
-BELOW_TOP = 0.010
-"""Points of a box's sides lie at least so far below its top, m."""
 RIM, EDGE = 0.015, 95.0
 """A bowl's rim: so far below its upper end, m, and the percentile of the points at its edge."""
 HANDLE, FARTHEST = 0.008, 0.045
@@ -43,10 +42,11 @@ BETWEEN = 0.1
 """A handle keeps this share of the height away from both ends of its mug."""
 GRIP, TOGETHER = 4, 0.8
 """Fewest points of a handle, and the least length of their mean direction: they lie on one side."""
-SLANT = 0.6
-"""Points whose normals have a larger share along the axis are on an end, not on the side."""
-NARROW, ALIGNED = 0.35, math.cos(math.radians(25.0))
-"""An axis by normals counts if they spread so much less along it, and if it is near the other."""
+LEVEL = 0.001
+"""Share of an axis along the vertical up to which it is level; `solids` makes nearly level ones so.
+"""
+TOP = 98.0
+"""Percentile of the points' heights at the upper side of what lies; noise is above it."""
 STANDS = 0.025
 """Height of a thing's lower end above the surface up to which it stands there, m."""
 UPRIGHT = 0.999
@@ -68,18 +68,8 @@ class Seen(NamedTuple):
     eye: float
 
 
-class _Sides(NamedTuple):
-    """turn: about the axis, rad. centre: (2,) and size: (x, y) across it, m, in its frame."""
-
-    turn: float
-    centre: Array
-    size: tuple[float, float]
-
-
 def refined(thing: Solid, seen: Seen) -> Solid:
     """A thing as its points show it; z = 0 is the surface. What they do not show stays."""
-    if thing.has_axis:
-        thing = _aligned(thing, seen)
     object_from_level = thing.frame_from_object.inverse()
     own = object_from_level.apply(seen.points)
     near = (np.abs(own) < np.array(thing.size) / 2 + MARGIN).all(axis=1)
@@ -89,10 +79,11 @@ def refined(thing: Solid, seen: Seen) -> Solid:
     low, high = _ends(thing, body)
     sides = None
     if thing.symmetry is Symmetry.BOX:
-        sides = _rectangle(thing, body, high)
+        sides = boxes.sides(thing, own, seen.normals @ object_from_level.rotation.T, high)
     elif thing.has_axis:
-        sides = _round(thing, body, high, object_from_level.apply((0.0, 0.0, seen.eye)))
-    sides = sides or _Sides(0.0, np.zeros(2), thing.size[:2])
+        eye = object_from_level.apply((0.0, 0.0, seen.eye))
+        sides = _resting(thing, body, eye) or _round(thing, body, high, eye)
+    sides = sides or Sides(0.0, np.zeros(2), thing.size[:2])
     if thing.symmetry is Symmetry.HANDLE:
         around = object_from_level.apply(seen.around)
         bearing = _bearing(own, seen.of_handle, around, sides, (low, high))
@@ -102,29 +93,6 @@ def refined(thing: Solid, seen: Seen) -> Solid:
     change = Transform((*sides.centre, (low + high) / 2), turn)
     size = (*sides.size, high - low)
     return replace(thing, frame_from_object=thing.frame_from_object @ change, size=size)
-
-
-def _aligned(thing: Solid, seen: Seen) -> Solid:
-    """A round thing with the axis that its side's normals show, unless it is upright.
-
-    Normals of a cone or cylinder lie on a circle about the axis, so they spread least along it.
-    """
-    frame = thing.frame_from_object
-    axis = frame.rotation[:, 2]
-    if abs(float(axis[2])) > UPRIGHT:
-        return thing
-    own = frame.inverse().apply(seen.points)
-    side = np.hypot(own[:, 0], own[:, 1]) > INNER * thing.size[0] / 2
-    side &= ~seen.of_handle & (np.abs(seen.normals @ axis) < SLANT)
-    side &= (seen.normals != 0.0).any(axis=1)
-    if int(side.sum()) < LEAST:
-        return thing
-    spread, directions = np.linalg.eigh(np.cov(seen.normals[side].T))
-    found = directions[:, 0] * math.copysign(1.0, float(directions[:, 0] @ axis))
-    if spread[0] > NARROW * spread[1] or float(found @ axis) < ALIGNED:
-        return thing
-    rotation = rotation_between(axis, found) @ frame.rotation
-    return replace(thing, frame_from_object=Transform.from_rotation(rotation, frame.position))
 
 
 def _ends(thing: Solid, body: Array) -> tuple[float, float]:
@@ -144,7 +112,31 @@ def _ends(thing: Solid, body: Array) -> tuple[float, float]:
     return low, high
 
 
-def _round(thing: Solid, body: Array, high: float, eye: Array) -> _Sides | None:
+def _resting(thing: Solid, body: Array, eye: Array) -> Sides | None:
+    """The side of a round thing that lies with its axis level; None of any other.
+
+    It rests on the surface, so its highest points tell its radius. body: (n, 3), eye: (3,) camera,
+    both in its frame, m.
+    """
+    frame = thing.frame_from_object
+    if abs(float(frame.rotation[2, 2])) > LEVEL or thing.symmetry is Symmetry.ROUND:
+        return None
+    radius = float(np.percentile(frame.apply(body)[:, 2], TOP)) / 2
+    up = frame.rotation[2, :2]
+    lift = radius - float(frame.position[2])
+    if abs(radius - thing.size[0] / 2) > MOVED or abs(lift) > MOVED:
+        return None
+    side = body[(body[:, :2] * (eye[:2] - body[:, :2])).sum(axis=1) > 0.0]
+    found = fit_revolution(side, radius) if len(side) >= LEAST else None
+    aside = np.zeros(2)
+    if found is not None and found.misfit < MISFIT:
+        aside = found.centre - float(found.centre @ up) * up
+    if float(np.hypot(*aside)) > MOVED:
+        return None
+    return Sides(0.0, aside + lift * up, (2 * radius, 2 * radius))
+
+
+def _round(thing: Solid, body: Array, high: float, eye: Array) -> Sides | None:
     """The side of a round thing; None if too little of it is seen.
 
     body: (n, 3), high: upper end, eye: (3,) camera, all in its frame, m.
@@ -165,30 +157,14 @@ def _round(thing: Solid, body: Array, high: float, eye: Array) -> _Sides | None:
             wide = max(wide, float(np.percentile(np.hypot(rim[:, 0], rim[:, 1]), EDGE)))
     if abs(wide - radius) > MOVED or float(np.hypot(*found.centre)) > MOVED:
         return None
-    return _Sides(0.0, found.centre, (2 * wide, 2 * wide))
-
-
-def _rectangle(thing: Solid, body: Array, high: float) -> _Sides | None:
-    """The sides of a box, seen from above; None if it leans, or if a part of it is seen.
-
-    body: (n, 3), high: upper end, both in its frame, m.
-    """
-    if abs(float(thing.frame_from_object.rotation[2, 2])) < UPRIGHT:
-        return None
-    faces = body[body[:, 2] < high - BELOW_TOP][:, :2]
-    found = fitted_to(smallest_rectangle(body[:, :2]), body[:, :2], faces)
-    told = np.array(thing.size[:2])
-    if float(np.abs(found.size - told).max()) > MOVED or float(np.hypot(*found.centre)) > MOVED:
-        return None
-    x, y = found.size.tolist()
-    return _Sides(found.yaw, found.centre, (x, y))
+    return Sides(0.0, found.centre, (2 * wide, 2 * wide))
 
 
 def _bearing(
     own: Array,
     of_handle: NDArray[np.bool_],
     around: Array,
-    sides: _Sides,
+    sides: Sides,
     ends: tuple[float, float],
 ) -> float | None:
     """Bearing of a mug's handle about its axis, rad; None if none is seen.

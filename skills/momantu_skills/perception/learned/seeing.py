@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array
-from momantu_bt.world import seeded
 from momantu_skills.perception.learned import weights
+from momantu_skills.perception.learned.claims import Cells, claimed
 from momantu_skills.perception.learned.crops import LOW, NORMAL, Crop, channels, mirror
 from momantu_skills.perception.learned.instances import LEAST, instances
 from momantu_skills.perception.learned.network import NOTHING
 from momantu_skills.perception.learned.refining import Seen, refined
-from momantu_skills.perception.learned.solids import Solid, solid
+from momantu_skills.perception.learned.solids import Solid
 from momantu_skills.perception.learned.targets import OFFSET_UNIT
 
 SHOWN = 0.5
@@ -48,24 +48,16 @@ class Seeing:
         points, coordinates, offsets = points[shown], coordinates[:, shown], offsets[shown]
         chances, normals = chances[shown], normals[shown]
         owner = instances(points + OFFSET_UNIT * offsets)
+        of_category, of_handle = self._of_category(chances)
+        cells = Cells(points, coordinates, of_category, of_handle)
+        things = claimed(cells, owner, self._network.categories)
         free = np.isfinite(every[:, 2]) & ~shown & (every[:, 2] > LOW)
         around = np.concatenate([every[free], points[owner < 0]])
-        of_category, of_handle = self._of_category(chances)
         found = []
-        for number in range(int(owner.max()) + 1):
+        for number, thing in things.items():
             mine = owner == number
-            random = seeded("similarity", number, int(mine.sum()))
-            thing = solid(
-                points[mine],
-                coordinates[:, mine],
-                of_category[mine],
-                of_handle[mine],
-                random,
-                self._network.categories,
-            )
-            if thing is not None:
-                seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
-                found.append(refined(thing, seen))
+            seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
+            found.append(refined(thing, seen))
         return found
 
     def _of_category(self, chances: Array) -> tuple[Array, NDArray[np.bool_]]:

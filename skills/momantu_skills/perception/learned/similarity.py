@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from momantu_bt.geometry import Array
 
-SAMPLES = 160
+SAMPLES = 100
 """Samples that are tried; with half of the points wrong one in 16 is right."""
 SAMPLE = 4
 """Points of a sample."""
-TESTED = 240
+TESTED = 120
 """About so many points of all tell which sample is best."""
 ROUNDS = 3
 """Refinements with the points that fit."""

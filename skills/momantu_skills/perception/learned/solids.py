@@ -20,7 +20,10 @@ DIAGONALS = (0.05, 0.45)
 EXTREME = 96.0
 """Percentile of the cells' coordinates at a thing's end."""
 STRAIGHT = math.radians(12.0)
-"""Tilt up to which an axis is taken for upright, or for level: things rest on level surfaces."""
+"""Tilt up to which an axis is taken for upright: things rest on level surfaces."""
+LYING = math.radians(30.0)
+"""The same of a box, which has a flat side below however it was put down; and how far the axis of a
+can or mug that lies may be from level. How what lies is turned is seen less well."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,17 +109,18 @@ def _extent(body: Array, symmetry: Symmetry) -> Array:
 
 
 def _straightened(rotation: Array, symmetry: Symmetry) -> Array:
-    """The rotation with its most upright axis made upright, or a lying can's axis made level.
+    """The rotation with its most upright axis made upright, or that of a lying thing made level.
 
-    A thing that no symmetry keeps from lying otherwise stays as it is unless z is upright.
+    Cans and mugs lie level, bottles on their shoulders need not. A thing that no symmetry keeps
+    from lying otherwise stays as it is unless z is upright.
     """
     axes = (0, 1, 2) if symmetry is Symmetry.BOX else (2,)
     best = max(axes, key=lambda axis: abs(rotation[2, axis]))
     axis = rotation[:, best]
     tilt = math.acos(min(1.0, abs(float(axis[2]))))
-    if tilt < STRAIGHT:
+    if tilt < (LYING if symmetry is Symmetry.BOX else STRAIGHT):
         return rotation_between(axis, np.array([0.0, 0.0, math.copysign(1.0, axis[2])])) @ rotation
-    if symmetry is Symmetry.ENDS and tilt > math.pi / 2 - STRAIGHT:
+    if symmetry in (Symmetry.ENDS, Symmetry.HANDLE) and tilt > math.pi / 2 - LYING:
         flat = np.array([axis[0], axis[1], 0.0])
         return rotation_between(axis, flat / np.linalg.norm(flat)) @ rotation
     return rotation

@@ -154,6 +154,26 @@ def test_a_mugs_handle_tells_how_it_is_turned() -> None:
         assert found.size == pytest.approx(size.tolist(), rel=0.05)
 
 
+@pytest.mark.parametrize(
+    ("name", "tilt", "cosine"),
+    [("can", 70, 0.0), ("mug", 70, 0.0), ("bottle", 70, 0.342), ("can", 10, 1.0), ("box", 20, 1.0)],
+)
+def test_what_rests_on_a_level_surface_is_upright_or_level(
+    name: str, tilt: float, cosine: float
+) -> None:
+    """cosine: of the angle between its axis and the vertical; a bottle may lie on its shoulder."""
+    pose = Transform((0.0, 1.0, 0.1), quaternion_from_axis_angle((1, 0, 0), math.radians(tilt)))
+    own = seeded("tilted").uniform(-0.5, 0.5, (300, 3)) * (0.07, 0.07, 0.16)
+    of_name = np.zeros((300, len(USUAL)))
+    of_name[:, list(USUAL).index(name)] = 1.0
+    normalized = own / np.linalg.norm((0.07, 0.07, 0.16))
+    found = solid(
+        pose.apply(own), normalized[None], of_name, np.zeros(300, dtype=bool), seeded("tilt")
+    )
+    assert found is not None
+    assert abs(found.frame_from_object.rotation[2, 2]) == pytest.approx(cosine, abs=0.02)
+
+
 def thing(x: float, cells: int, category: str = "can", wide: float = 0.07) -> Solid:
     return Solid(category, Transform((x, 0, 0.06)), (wide, wide, 0.12), cells, 0.9, False)
 
@@ -174,6 +194,17 @@ def test_the_likelier_category_wins() -> None:
         Look(0.7, 0.4, 2.0, (thing(0.01, 100, "mug"),)),
     ]
     assert [one.category for one in fused(looks)] == ["can"]
+
+
+@pytest.mark.parametrize(("cells", "turned"), [(180, True), (60, False)])
+def test_a_fragment_with_a_handle_is_no_better_than_a_whole_mug(cells: int, turned: bool) -> None:
+    """cells: of the view that shows the handle; turned: whether it tells how the mug is turned."""
+    yaw = Transform((0.01, 0.0, 0.06), quaternion_from_axis_angle((0, 0, 1), 1.0))
+    handle = Solid("mug", yaw, (0.05, 0.05, 0.08), cells, 0.9, True)
+    looks = [Look(0.7, 0.4, 1.0, (thing(0.0, 300, "mug"),)), Look(0.7, 0.4, 2.0, (handle,))]
+    (found,) = fused(looks)
+    assert found.handle is turned
+    assert found.size == (handle.size if turned else thing(0.0, 300).size)
 
 
 def test_views_that_differ_in_height_are_shifted_together() -> None:

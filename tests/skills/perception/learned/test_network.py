@@ -91,7 +91,7 @@ def spoil(path: Path, how: str) -> None:
         ("text", "WEIGHTS_BROKEN", "cannot be read"),
         ("cut", "WEIGHTS_BROKEN", "cannot be read"),
         ("foreign", "WEIGHTS_FOREIGN", "holds no weights of the learned detector"),
-        ("version", "WEIGHTS_OUTDATED", "of version 1, this detector uses version 2"),
+        ("version", "WEIGHTS_OUTDATED", "of version 1, this detector uses version 3"),
         ("other network", "WEIGHTS_FOREIGN", "another network: 'head.bias'"),
         ("nan", "WEIGHTS_BROKEN", "not finite"),
     ],

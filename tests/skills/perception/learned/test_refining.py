@@ -64,30 +64,75 @@ def test_a_thing_on_another_keeps_its_lower_end() -> None:
     assert found.frame_from_object.position[2] == pytest.approx(0.16, abs=0.003)
 
 
-def test_a_lying_thing_is_turned_as_its_normals_are() -> None:
+@pytest.mark.parametrize("share", [0.6, 0.85, 1.3])
+def test_a_lying_can_is_as_wide_as_it_is_high(share: float) -> None:
+    """Its front is hidden, so that its side alone does not tell how wide it is."""
     level = quaternion_from_axis_angle((0.0, 1.0, 0.0), math.pi / 2)
     true = Transform((0.1, 1.0, 0.033), level)
     points, normals = cylinder(true, 0.033, 0.16)
-    off = quaternion_from_axis_angle((0.0, 0.0, 1.0), math.radians(12.0))
-    wrong = Transform(quaternion=off).rotation @ true.rotation
-    pose = Transform.from_rotation(wrong, true.position)
-    found = refined(said("bottle", pose, (0.066, 0.066, 0.15)), seen(points, normals))
-    cosine = float(found.frame_from_object.rotation[:, 2] @ true.rotation[:, 2])
-    assert math.degrees(math.acos(min(1.0, cosine))) < 1.0
+    upper = points[:, 2] > 0.05
+    wrong = said("can", Transform((0.1, 1.0, 0.028), level), (0.066 * share, 0.066 * share, 0.15))
+    found = refined(wrong, seen(points[upper], normals[upper]))
+    assert found.size[:2] == pytest.approx((0.066, 0.066), abs=0.004)
+    assert found.size[2] == pytest.approx(0.16, abs=0.01)
+    assert np.allclose(found.frame_from_object.position, true.position, atol=0.004)
 
 
-def test_a_box_gets_the_turn_and_size_of_its_sides() -> None:
-    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3))
-    draw, half = seeded("box"), np.array([0.04, 0.06, 0.05])
-    own = draw.uniform(-1.0, 1.0, (3000, 3)) * half
+def test_what_is_too_high_to_lie_on_the_surface_keeps_its_width() -> None:
+    level = quaternion_from_axis_angle((0.0, 1.0, 0.0), math.pi / 2)
+    true = Transform((0.1, 1.0, 0.133), level)  # on another thing
+    points, normals = cylinder(true, 0.033, 0.16)
+    found = refined(said("can", true, (0.066, 0.066, 0.16)), seen(points, normals))
+    assert found.size[:2] == pytest.approx((0.066, 0.066), abs=0.004)
+    assert found.size[2] == pytest.approx(0.16, abs=0.01)
+
+
+BOX = np.array([0.08, 0.12, 0.10])
+
+
+def box(pose: Transform) -> tuple[Array, Array]:
+    """Points and normals (n, 3) of three faces of a box, two of them upright, in `level`."""
+    draw = seeded("box")
+    own = draw.uniform(-0.5, 0.5, (3000, 3)) * BOX
     side = draw.integers(3, size=len(own))
-    own[side == 0, 0] = -half[0]
-    own[side == 1, 1] = -half[1]
-    own[side == 2, 2] = half[2]
-    wrong = Transform((0.105, 0.995, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.4))
-    found = refined(said("box", wrong, (0.095, 0.11, 0.09)), seen(true.apply(own), 0 * own))
+    normals = np.zeros_like(own)
+    for axis, sign in enumerate((-1.0, -1.0, 1.0)):
+        own[side == axis, axis] = sign * BOX[axis] / 2
+        normals[side == axis, axis] = sign
+    return pose.apply(own), normals @ pose.rotation.T
+
+
+@pytest.mark.parametrize("known", [True, False], ids=["by normals", "by points"])
+@pytest.mark.parametrize("off", [0.1, -0.6])
+def test_a_box_gets_the_turn_and_size_of_its_sides(known: bool, off: float) -> None:
+    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3))
+    points, normals = box(true)
+    turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3 + off)
+    wrong = said("box", Transform((0.105, 0.995, 0.05), turn), (0.095, 0.11, 0.09))
+    found = refined(wrong, seen(points, normals * known))
     assert found.size == pytest.approx((0.08, 0.12, 0.10), abs=0.003)
     assert found.frame_from_object.yaw == pytest.approx(0.3, abs=0.02)
+
+
+def test_a_hidden_end_of_a_box_is_where_the_network_says() -> None:
+    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3))
+    points, normals = box(true)
+    front = true.inverse().apply(points)[:, 1] < -0.01  # 5 cm of 12 are seen
+    turn = quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.4)
+    wrong = said("box", Transform((0.1, 1.0, 0.05), turn), (0.08, 0.12, 0.10))
+    found = refined(wrong, seen(points[front], normals[front]))
+    assert found.size == pytest.approx((0.08, 0.12, 0.10), abs=0.003)
+    assert found.frame_from_object.yaw == pytest.approx(0.3, abs=0.02)
+    assert np.allclose(found.frame_from_object.position, true.position, atol=0.005)
+
+
+def test_points_of_its_neighbour_do_not_make_a_box_larger() -> None:
+    true = Transform((0.1, 1.0, 0.05), quaternion_from_axis_angle((0.0, 0.0, 1.0), 0.3))
+    points, normals = box(true)
+    beside, others = box(true @ Transform((0.0, 0.14, 0.0)))
+    both = np.concatenate([points, beside[::8]]), np.concatenate([normals, others[::8]])
+    found = refined(said("box", true, (0.08, 0.12, 0.10)), seen(*both))
+    assert found.size == pytest.approx((0.08, 0.12, 0.10), abs=0.02)
 
 
 @pytest.mark.parametrize("named", [True, False], ids=["by the network", "by what is beside it"])
