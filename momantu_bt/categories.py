@@ -32,6 +32,8 @@ USUAL: Mapping[str, Symmetry] = MappingProxyType(
     }
 )
 """The categories that are known unless pictures and weights say otherwise."""
+HANDLED = tuple(name for name, symmetry in USUAL.items() if symmetry is Symmetry.HANDLE)
+"""Those whose things have a handle."""
 
 
 def categories_from(told: Mapping[str, str]) -> dict[str, Symmetry]:

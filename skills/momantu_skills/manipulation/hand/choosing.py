@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from momantu_bt.categories import USUAL, Symmetry
+from momantu_bt.categories import HANDLED
 from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array
 from momantu_bt.messages import DetectedObject
@@ -19,8 +19,6 @@ from momantu_skills.manipulation.hand.resting import lies
 from momantu_skills.manipulation.hand.rims import seen_hollow, seen_rim
 from momantu_skills.manipulation.hand.sides import Sides, sentence
 
-HANDLED = tuple(name for name, kind in USUAL.items() if kind is Symmetry.HANDLE)
-"""Categories of things that have a handle, which is in the way of a hand that grasps the body."""
 AROUND, STEP = 0.05, 0.008
 """How far around a lying object the surface is looked at, and how closely, m."""
 NO_RIM = "no picture shows room for a finger behind its rim"

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from momantu_bt.categories import HANDLED
 from momantu_bt.detector import DetectorError, ObjectDetector, View
 from momantu_bt.geometry import Array
 from momantu_bt.lazy import lazily
@@ -29,7 +30,7 @@ class BothDetectors:
     """Asks the geometric and the learned detector, and believes most what both say.
 
     Where they agree on category and sizes the object has the pose and sizes that fit the depth
-    (those of the learned one for a mug, whose handle it knows), and the better of both scores.
+    (those of the learned one for what has a handle, which it knows), and the better of both scores.
     Where they differ, the learned one's answer stays, with the mean of both scores: it tells
     categories apart better, and knows what lies. What one alone sees has its score lowered. A heap
     that the geometric detector takes for one object gives way to those that the learned one sees
@@ -97,7 +98,7 @@ def _merged(measured: list[DetectedObject], learned: list[DetectedObject]) -> li
 def _of_two(measured: DetectedObject, learned: DetectedObject) -> DetectedObject:
     """What both see, as they say it together."""
     if measured.category == learned.category and _alike(measured, learned):
-        best = learned if learned.category == "mug" else measured
+        best = learned if learned.category in HANDLED else measured
         return replace(best, score=max(measured.score, learned.score))
     return replace(learned, score=(measured.score + learned.score) / 2)
 
