@@ -42,13 +42,7 @@ class Wire(str):
 
 def example_ports(skill: type[Skill]) -> dict[str, Any]:
     """A value or a Wire for each port that a tree must give, and a key for each output."""
-    try:
-        rehearsed = dict(skill.rehearsal(0)).get("inputs", {})
-    except PLUGIN_ERRORS:  # other people's code; `skills test` reports what it raises
-        rehearsed = {}
-    given = {
-        name: value for name, value in rehearsed.items() if isinstance(value, str | int | float)
-    }
+    given = _rehearsed(skill)
     first = {group[0] for group in skill.one_of if not given.keys() & set(group)}
     found: dict[str, Any] = {}
     for port in skill.ports.values():
@@ -59,6 +53,19 @@ def example_ports(skill: type[Skill]) -> dict[str, Any]:
         elif port.required or port.name in first:
             found[port.name] = _value(port)
     return found
+
+
+def _rehearsed(skill: type[Skill]) -> dict[str, str | int | float]:
+    """The plain inputs of its rehearsal; what differs from call to call is a temporary file."""
+    try:
+        inputs, again = (dict(skill.rehearsal(0)).get("inputs", {}) for _ in range(2))
+    except PLUGIN_ERRORS:  # other people's code; `skills test` reports what it raises
+        return {}
+    return {
+        name: value
+        for name, value in inputs.items()
+        if isinstance(value, str | int | float) and again.get(name) == value
+    }
 
 
 def yaml_example(name: str, skill: type[Skill]) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from textwrap import indent
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 
@@ -100,6 +101,22 @@ def test_how_examples_are_spelled() -> None:
     assert "  angle: 30 deg" in lines
     assert "  how: fast" in lines
     assert not any("share" in line for line in lines)
+
+
+def test_what_differs_from_rehearsal_to_rehearsal_is_no_example() -> None:
+    class Write(Skill):
+        """Writes to a folder."""
+
+        folder: str = In(doc="where to")
+        often: int = In(doc="how often")
+        names = iter("abcdef")
+
+        @classmethod
+        def rehearsal(cls, seed: int) -> Mapping[str, Any]:
+            """Write to a folder of its own each time."""
+            return {"inputs": {"folder": next(cls.names), "often": 7}}
+
+    assert example_ports(Write) == {"folder": "text", "often": 7}
 
 
 def test_the_skills_that_it_calls_are_told() -> None:
