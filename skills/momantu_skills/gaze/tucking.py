@@ -25,8 +25,8 @@ def take_in(skill: Skill, robot: Robot, service: ArmScene) -> Run:
     """Fold an arm that extends beyond the base into `home`, or `carry` if it holds an object.
 
     It looks first where its way leads over a surface that no picture has shown; the skill uses
-    CAMERA_CARRIER.
-    Where it finds no way, the base drives with the arm as it is: that may be what gives it room.
+    CAMERA_CARRIER. Where it finds no way, the base drives with the arm as it is: that may be what
+    gives it room.
 
     Raises:
         Failure: ARM_STUCK.

@@ -127,3 +127,15 @@ def test_each_way_of_failing_has_its_code(obedient: MakeObedient) -> None:
 def test_the_planner_keeps_more_room_than_the_bases_side(obedient: MakeObedient) -> None:
     base = obedient(Pose2D(1.0, 3.0, 0.0))
     assert planning_radius(base) > base.half_width
+
+
+def test_the_narrowest_point_is_told_also_from_beside_the_path(obedient: MakeObedient) -> None:
+    """Between two blocks the way is 0.8 m wide; a base that was pushed aside is 1.5 m off it."""
+    base = obedient(Pose2D(1.0, 3.0, 0.0), [(3.0, 0.0, 3.4, 2.6), (3.0, 3.4, 3.4, 6.0)])
+    route = route_to(base, Pose2D(6.0, 3.0, 0.0))
+    assert route is not None
+    x, y, room = route.narrowest(base, Pose2D(2.6, 3.0, 0.0))
+    assert 2.8 < x < 3.6
+    assert abs(y - 3.0) < 0.2
+    assert abs(room - 0.4) < 0.1
+    assert route.narrowest(base, Pose2D(2.6, 4.5, 0.0))[2] > 0.0

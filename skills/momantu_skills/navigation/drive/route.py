@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.failure import Failure
-from momantu_bt.geometry import Pose2D
+from momantu_bt.geometry import Array, Pose2D
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.map.fields import Field
 from momantu_skills.navigation.plan.goals import Stand
@@ -47,32 +47,37 @@ class Route:
 
     def crossed(self, vehicle: Vehicle, pose: Pose2D) -> bool:
         """Return whether an obstacle is on the path ahead of the base."""
-        field, grid = vehicle.costmap.field, vehicle.costmap.grid
-        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
-        ahead = self.plan.path[int(np.argmin(away)) :]
-        count = int(LOOK_AHEAD / (0.5 * grid.resolution))
-        cells = ((ahead[:count] - vehicle.costmap.frame[:2]) / grid.resolution).astype(np.int64)
-        room = field[cells[:, 1], cells[:, 0]]
+        count = int(LOOK_AHEAD / (0.5 * vehicle.costmap.grid.resolution))
+        room = _clearances(vehicle, self._ahead(pose)[:count])
         return bool((room < planning_radius(vehicle) - CROSSED_BY).any())
 
     def narrowest(self, vehicle: Vehicle, pose: Pose2D) -> tuple[float, float, float]:
-        """Return the narrowest point of the next metres (map): x, y, and the clearance there, m."""
-        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
-        ahead = self.plan.path[int(np.argmin(away)) :]
-        near = ahead[np.hypot(ahead[:, 0] - pose.x, ahead[:, 1] - pose.y) < PASSAGE]
-        grid = vehicle.costmap.grid
-        cells = np.array([grid.index(float(x), float(y)) for x, y in near])
-        room = vehicle.costmap.field[cells[:, 0], cells[:, 1]]
+        """Return the narrowest point of the next metre (map): x, y, and the clearance there, m."""
+        ahead = self._ahead(pose)
+        near = np.hypot(*(ahead - ahead[0]).T) < PASSAGE
+        room = _clearances(vehicle, ahead[near])
         least = int(np.argmin(room))
-        return float(near[least, 0]), float(near[least, 1]), float(room[least])
+        x, y = ahead[near][least].tolist()
+        return x, y, float(room[least])
+
+    def _ahead(self, pose: Pose2D) -> Array:
+        """Return the path (n, 2) from its point that is nearest to a pose on."""
+        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
+        return np.asarray(self.plan.path[int(np.argmin(away)) :])
 
     def heading(self, pose: Pose2D, ahead: float = 0.5) -> float:
         """Return the direction from a pose to the point of the path `ahead` m farther on, rad."""
-        away = np.hypot(self.plan.path[:, 0] - pose.x, self.plan.path[:, 1] - pose.y)
-        first = int(np.argmin(away))
-        beyond = np.nonzero(away[first:] > ahead)[0]
-        x, y = self.plan.path[first + int(beyond[0])] if len(beyond) else self.plan.path[-1]
+        path = self._ahead(pose)
+        beyond = path[np.hypot(path[:, 0] - pose.x, path[:, 1] - pose.y) > ahead]
+        x, y = beyond[0] if len(beyond) else path[-1]
         return math.atan2(float(y) - pose.y, float(x) - pose.x)
+
+
+def _clearances(vehicle: Vehicle, points: Array) -> Array:
+    """Return the clearance (n,) at points (n, 2) of the map, m."""
+    costmap = vehicle.costmap
+    cells = ((points - costmap.frame[:2]) / costmap.grid.resolution).astype(np.int64)
+    return np.asarray(costmap.field[cells[:, 1], cells[:, 0]])
 
 
 def planning_radius(vehicle: Vehicle) -> float:

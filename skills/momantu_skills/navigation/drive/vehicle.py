@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import numpy as np
 
@@ -29,9 +29,6 @@ with lazily():
     from momantu_skills.navigation.control import footprint, guard
     from momantu_skills.navigation.drive import sight
     from momantu_skills.navigation.map import costmap, heights, rolling
-
-if TYPE_CHECKING:
-    pass
 
 GAZE = (2.0, 0.0, 0.1)
 """Point that the camera looks at while driving, base frame, m: two metres ahead, near the floor."""
