@@ -7,12 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from momantu_bt.geometry import (
-    Array,
-    Transform,
-    quaternion_from_axis_angle,
-)
+from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import PointCloud
 from momantu_skills.mapping.logs.clouds.log import CloudLog
 from momantu_skills.mapping.three_d.config import CloudConfig
@@ -113,9 +110,8 @@ class _Follower:
         if before - self._turned_at > GOES_ON:
             return Transform()
         passed = after - before
-        angle = float(np.linalg.norm(self._turning))
-        axis = self._turning / angle if angle > 0.0 else np.array([0.0, 0.0, 1.0])
-        return Transform(self._speed * passed, quaternion_from_axis_angle(axis, angle * passed))
+        turned = Rotation.from_rotvec(self._turning * passed).as_matrix()
+        return Transform.from_rotation(turned, self._speed * passed)
 
     def _learn(self, stamp: float) -> None:
         """Note how fast the base moved between the last two turns, as their matches tell."""
@@ -124,17 +120,10 @@ class _Follower:
         if 0.0 < passed < GOES_ON:
             step = self._followed.inverse() @ now
             self._speed = step.position / passed
-            self._turning = _rotation_vector(step) / passed
+            self._turning = Rotation.from_matrix(step.rotation).as_rotvec() / passed
         else:
             self._speed, self._turning = np.zeros(3), np.zeros(3)
         self._turned_at, self._followed = stamp, now
-
-
-def _rotation_vector(step: Transform) -> Array:
-    w, *turn = step.quaternion
-    axis = np.asarray(turn) * (1.0 if w >= 0.0 else -1.0)
-    sine = float(np.linalg.norm(axis))
-    return axis * (2.0 * math.atan2(sine, abs(w)) / sine) if sine > 1e-12 else np.zeros(3)
 
 
 def _begin(turn: PointCloud) -> float:
