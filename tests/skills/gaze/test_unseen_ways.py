@@ -41,13 +41,19 @@ def looks(*cameras: Transform) -> SeenSpace:
     return taken
 
 
-def arm(taken: SeenSpace, known: float = FAR) -> Any:
-    """An arm whose joints are the place between the pads; `known` m beside furniture."""
+def arm(
+    taken: SeenSpace, known: float = FAR, elbow: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> Any:
+    """An arm whose joints are the place between the pads; `known` m beside furniture.
+
+    elbow: a corner of its links, from the place between the pads, m.
+    """
     scene = SimpleNamespace(
         surroundings=SimpleNamespace(supports=(TABLE,)),
         known=(),
         seen_space=taken,
         model=SimpleNamespace(tip_from_grasp=Transform()),
+        along=lambda state, postures: np.array(postures)[:, None] + [(0.0, 0.0, 0.0), elbow],
     )
     plan = SimpleNamespace(distance=lambda points: np.full(len(points), known))
     return SimpleNamespace(
@@ -130,6 +136,24 @@ def test_high_above_an_edge_a_wall_may_stand() -> None:
     unseen = arm(looks(), known=0.0)
     assert blind_spot(unseen, along_the_edge) is not None
     assert blind_spot(unseen, way((0.9, 0.0, 1.1), (0.9, 0.8, 1.1))) is None
+
+
+@pytest.mark.parametrize(("below", "blind"), [(-0.4, True), (0.1, False), (-0.55, False)])
+def test_a_link_over_the_unseen_end_of_a_table_counts_where_something_may_stand(
+    below: float, blind: bool
+) -> None:
+    high = way((0.6, 0.0, 1.2), (0.6, 0.2, 1.2))
+    assert blind_spot(arm(looks(AHEAD)), high) is None
+    spot = blind_spot(arm(looks(AHEAD), elbow=(0.0, 0.75, below)), high)
+    assert (spot is not None) is blind
+    if spot is not None:
+        assert spot == pytest.approx((0.6, 0.87, 0.8), abs=0.05)
+
+
+def test_a_link_that_is_unseen_for_a_moment_needs_no_look() -> None:
+    moment = [SimpleNamespace(positions=np.array([(0.6, 0.2, 1.2)]))]
+    assert blind_spot(arm(looks(AHEAD), elbow=(0.0, 0.75, -0.4)), moment) is None
+    assert blind_spot(arm(looks(AHEAD), elbow=(0.0, 0.75, -0.4)), moment * 2) is not None
 
 
 def test_unseen_air_counts_beside_what_the_map_knows() -> None:

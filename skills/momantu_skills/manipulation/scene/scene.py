@@ -44,7 +44,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     support_of_plane,
     within,
 )
-from momantu_skills.manipulation.scene.swept import swept
+from momantu_skills.manipulation.scene.swept import corners_along, swept
 from momantu_skills.navigation.control.guard import HARD_MARGIN
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.rows import unique_rows
@@ -201,6 +201,10 @@ class Scene:
         places = np.rint(np.vstack([self.surroundings.cells, found]) * PER_METRE).astype(np.int64)
         cells = np.asarray(unique_rows(places)[0] / PER_METRE)
         self.surroundings = replace(self.surroundings, cells=cells)
+
+    def along(self, state: RobotState, postures: Sequence[Array]) -> Array:
+        """Corners (k, n, 3), odom, of the links that the arm moves, at each of k postures (n,)."""
+        return corners_along(self.model, self.body.moving, state, postures)
 
     def taken(self, thing: DetectedObject, margin: tuple[float, float, float]) -> None:
         """Forget what was seen of an object that is in the hand now, where it stood.

@@ -1,8 +1,8 @@
-"""The space that an arm would have come to, had nothing stopped it."""
+"""The space that an arm takes on its way, or would have taken, had nothing stopped it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -28,14 +28,29 @@ def swept(
     """
     after = _poses(model, moving, state, ahead)
     hulls = {link: model.hulls[link] for link in after}
-    corners = [hulls[link] @ pose[:3, :3].T + pose[:3, 3] for link, pose in after.items()]
-    grid = _raster(state.odom_from_base.apply(np.vstack(corners)), edge)
+    grid = _raster(state.odom_from_base.apply(_corners(model, after)), edge)
     own = state.odom_from_base.inverse().apply(grid)
     kept = LinkMask(hulls, 0.0).covers(own, after)
     touched = LinkMask(hulls, HALF_DIAGONAL * edge)
     for joints in passed:
         kept[kept] = ~touched.covers(own[kept], _poses(model, moving, state, joints))
     return np.asarray(grid[kept])
+
+
+def corners_along(
+    model: ArmModel, moving: Sequence[str], state: RobotState, postures: Sequence[Array]
+) -> Array:
+    """Corners (k, n, 3), odom, of the links that the arm moves, at each of k postures (n,)."""
+    corners = [_corners(model, _poses(model, moving, state, joints)) for joints in postures]
+    odom = state.odom_from_base.apply(np.concatenate(corners))
+    return np.asarray(odom.reshape(len(postures), -1, 3))
+
+
+def _corners(model: ArmModel, poses: Mapping[str, Array]) -> Array:
+    """Corners (n, 3), base frame, of the hulls of links at some poses."""
+    return np.vstack(
+        [model.hulls[link] @ pose[:3, :3].T + pose[:3, 3] for link, pose in poses.items()]
+    )
 
 
 def _raster(points: Array, edge: float) -> Array:
