@@ -20,12 +20,14 @@ from momantu_skills.navigation.map.costmap import Costmap
 from momantu_skills.navigation.map.maps import GridMap
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.plan.planner import plan
+from momantu_skills.perception.learned import similarity
 
 
 def compile_kernels() -> None:
     """Compile the kernels of arm and base into numba's cache."""
     group.compile_kernels()
     compile_navigation()
+    compile_perception()
 
 
 def compile_navigation() -> None:
@@ -56,6 +58,13 @@ def compile_navigation() -> None:
     glide.command(here, goal, gliding)
     graceful.command(here, goal, limits)
     safe_share((0.5, 0.1, 0.0), (0.0, 0.0, 0.0), limits, disc, rays.points())
+
+
+def compile_perception() -> None:
+    """Call the learned detector's kernels, which need no network."""
+    random = np.random.default_rng(0)
+    points = random.random((40, 3))
+    similarity.fit(points, points, 0.01, (0.5, 2.0), random)
 
 
 if __name__ == "__main__":
