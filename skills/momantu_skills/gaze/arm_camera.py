@@ -205,7 +205,7 @@ def free_postures(arm: Arm, world: CollisionWorld, postures: Array, point: Array
         ends = arm.state.odom_from_base.apply(np.vstack([camera, point]))
         if any(solid.between(*ends) for solid in arm.scene.overhead):
             continue
-        if not arm.scene.hides(_between(camera, point), q):
+        if not arm.scene.own.hides(_between(camera, point), q):
             found.append(q)
             if len(found) == ENOUGH:
                 break

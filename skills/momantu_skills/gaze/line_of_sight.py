@@ -66,7 +66,7 @@ def _in_the_way(scene: Scene, state: RobotState, held: HeldObject | None) -> lis
     }
     if held is not None:
         tip = poses[model.description.hand.frame]
-        bodies["held"] = scene.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
+        bodies["held"] = scene.own.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
     seen = (camera.inverse().apply(corners) for corners in bodies.values())
     outlines = (outline(corners) for corners in seen if not _around_lens(corners))
     return [found for found in outlines if found is not None]

@@ -136,7 +136,7 @@ def _of_hand(arm: Arm, postures: Sequence[Array], *, walls: bool) -> Array | Non
 
 def _of_links(arm: Arm, postures: Sequence[Array]) -> Array | None:
     """See `blind_spot`: of wrist, forearm and what else the arm moves, over surfaces."""
-    corners = arm.scene.along(arm.state, postures)
+    corners = arm.scene.own.along(arm.state, postures)
     unseen = _low(arm, corners.reshape(-1, 3))
     unseen[unseen] = ~arm.scene.seen_space.show(corners.reshape(-1, 3)[unseen])
     unseen = unseen.reshape(corners.shape[:2])

@@ -95,7 +95,7 @@ def test_the_way_there_meets_neither_the_table_nor_the_robot(scene_of: SceneOf, 
     table = [(x, y, z) for x in (0.6, 1.4) for y in (-0.7, 0.7) for z in (0.0, 0.72)]
     body = scene.scene
     world = CollisionWorld(
-        body.body, body.model.configuration(robot.state()), [Obstacle("table", np.array(table))]
+        body.own.pairs, body.model.configuration(robot.state()), [Obstacle("table", np.array(table))]
     )
     assert all(world.path_free(way) for way in ways(robot))
 
@@ -185,7 +185,7 @@ def test_what_hangs_over_a_table_is_looked_below(
     camera = eye.tip_pose(np.array([robot.joints[n] for n in eye.names])).position
     assert not board.between(camera, point)
     body, solid = scene.scene, board.obstacle(Transform(), "board")
-    world = CollisionWorld(body.body, body.model.configuration(robot.state()), [solid])
+    world = CollisionWorld(body.own.pairs, body.model.configuration(robot.state()), [solid])
     assert all(world.path_free(way) for way in ways(robot))
 
 

@@ -53,7 +53,9 @@ def arm(
         known=(),
         seen_space=taken,
         model=SimpleNamespace(tip_from_grasp=Transform()),
-        along=lambda state, postures: np.array(postures)[:, None] + [(0.0, 0.0, 0.0), elbow],
+        own=SimpleNamespace(
+            along=lambda state, postures: np.array(postures)[:, None] + [(0.0, 0.0, 0.0), elbow]
+        ),
     )
     plan = SimpleNamespace(distance=lambda points: np.full(len(points), known))
     return SimpleNamespace(

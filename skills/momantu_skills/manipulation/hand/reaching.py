@@ -268,7 +268,7 @@ def _around(
     base_from_object = state.odom_from_base.inverse() @ thing.pose.transform
     solids = [Obstacle("target", base_from_object.apply(corners)) for corners in pieces]
     posture = arm.scene.model.configuration(state, arm.open_width)
-    return CollisionWorld(arm.scene.body, posture, solids, margin=BESIDE)
+    return CollisionWorld(arm.scene.own.pairs, posture, solids, margin=BESIDE)
 
 
 def _cut(thing: DetectedObject, options: Options) -> tuple[float, float, float]:

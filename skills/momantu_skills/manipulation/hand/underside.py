@@ -40,7 +40,7 @@ def _underside(arm: Arm, thing: DetectedObject, base_from_object: Transform, q: 
     corners = np.vstack(
         [
             model.hulls[link] @ poses[link][:3, :3].T + poses[link][:3, 3]
-            for link in arm.scene.body.moving
+            for link in arm.scene.own.pairs.moving
         ]
     )
     away = np.linalg.norm(corners[:, :2] - base_from_object.position[:2], axis=1)

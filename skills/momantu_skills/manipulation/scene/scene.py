@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -19,16 +17,14 @@ from momantu_skills.manipulation.config import PlanningConfig, SceneConfig
 from momantu_skills.manipulation.model.arm_model import arm_model
 from momantu_skills.manipulation.model.collision import (
     Attached,
-    BodyPairs,
     Cells,
     CollisionWorld,
     Obstacle,
-    body_pairs,
 )
-from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
 from momantu_skills.manipulation.scene import outreach
 from momantu_skills.manipulation.scene.columns import DOUBT, HALF_DIAGONAL, WALL, Columns
 from momantu_skills.manipulation.scene.dropped import dropped
+from momantu_skills.manipulation.scene.own_body import OwnBody
 from momantu_skills.manipulation.scene.recent import RecentPictures
 from momantu_skills.manipulation.scene.site_obstacles import Overhead, hanging
 from momantu_skills.manipulation.scene.surroundings import (
@@ -44,7 +40,7 @@ from momantu_skills.manipulation.scene.surroundings import (
     support_of_plane,
     within,
 )
-from momantu_skills.manipulation.scene.swept import corners_along, swept
+from momantu_skills.manipulation.scene.swept import swept
 from momantu_skills.navigation.control.guard import HARD_MARGIN
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.rows import unique_rows
@@ -62,8 +58,6 @@ DISC = 0.25
 """Radius of the assumed support below an object of which too little is visible, m."""
 FLOOR_BAND = 0.06
 """Height above the floor below which points belong to the floor, m."""
-TURNED = 0.25
-"""How far what is held may have turned in the hand, rad: a wide bowl hangs down from its rim."""
 SEEN_THROUGH = 0.03
 """An old cell is deleted if the picture shows something this much behind it, m."""
 
@@ -93,14 +87,9 @@ class Scene:
         self.columns: Columns | None = None
         self.odom_from_map: Transform | None = None
         self.seen_space = SeenSpace()
-        self._mask = LinkMask(self.model.hulls, config.robot_padding)
+        self.own = OwnBody(self.model, config.robot_padding)
         if description.has_arm:
-            self.body  # noqa: B018  # built before the run begins, as it takes a while
-
-    @cached_property
-    def body(self) -> BodyPairs:
-        """The robot's shapes, and the pairs of links that the arm can bring together."""
-        return body_pairs(self.model)
+            self.own.pairs  # noqa: B018  # built before the run begins, as it takes a while
 
     @property
     def _reach(self) -> float:
@@ -144,7 +133,7 @@ class Scene:
         optical = points_from_depth(image.depth, image.intrinsics, every)
         base_points = (odom_from_base.inverse() @ snapshot.odom_from_camera).apply(optical)
         base_points = base_points[np.linalg.norm(base_points[:, :2], axis=1) < self._reach]
-        own = self.is_robot(base_points, snapshot.state, held)
+        own = self.own.covers(base_points, snapshot.state, held)
         return odom_from_base.apply(base_points[~own])
 
     def _still_believed(self, cells: Array, snapshot: Snapshot) -> NDArray[np.bool_]:
@@ -196,15 +185,11 @@ class Scene:
         where no picture shows that nothing is; later pictures may show it.
         """
         edge = self.config.voxel
-        found = swept(self.model, self.body.moving, state, passed, ahead, edge)
+        found = swept(self.model, self.own.pairs.moving, state, passed, ahead, edge)
         found = found[~self.seen_space.free(found, HALF_DIAGONAL * edge, DOUBT)]
         places = np.rint(np.vstack([self.surroundings.cells, found]) * PER_METRE).astype(np.int64)
         cells = np.asarray(unique_rows(places)[0] / PER_METRE)
         self.surroundings = replace(self.surroundings, cells=cells)
-
-    def along(self, state: RobotState, postures: Sequence[Array]) -> Array:
-        """Corners (k, n, 3), odom, of the links that the arm moves, at each of k postures (n,)."""
-        return corners_along(self.model, self.body.moving, state, postures)
 
     def taken(self, thing: DetectedObject, margin: tuple[float, float, float]) -> None:
         """Forget what was seen of an object that is in the hand now, where it stood.
@@ -214,69 +199,17 @@ class Scene:
         x, y, z = (edge / 2 + more for edge, more in zip(thing.size, margin, strict=True))
         self.surroundings = self.surroundings.vacated(thing.pose.transform, (x, y, z))
 
-    # the robot's own body
-
-    def footprint(
-        self, state: RobotState, held: HeldObject | None, below: float = math.inf
-    ) -> Array:
-        """See `PlanningScene.footprint`."""
-        corners = [each for each in self._corners(state, held) if each[:, 2].min() < below]
-        outline = np.array([(x, y, 0.0) for x, y in self.model.description.footprint])
-        everything = np.vstack([*corners, outline])
-        return floor_outline(everything[everything[:, 2] < self.model.description.height])
-
-    def _corners(self, state: RobotState, held: HeldObject | None) -> list[Array]:
-        """Corners (n, 3) of each link, and of the held object, base frame."""
-        poses = self.model.link_poses(self.model.configuration(state))
-        corners = [
-            hull @ poses[link][:3, :3].T + poses[link][:3, 3]
-            for link, hull in self.model.hulls.items()
-        ]
-        if held is not None:
-            tip = poses[self.model.description.hand.frame]
-            corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
-        return corners
-
-    def is_robot(
-        self, points: Array, state: RobotState, held: HeldObject | None
-    ) -> NDArray[np.bool_]:
-        """See `PlanningScene.is_robot`."""
-        poses = self.model.link_poses(self.model.configuration(state))
-        own = self._mask.covers(points, poses)
-        if held is not None:
-            tip = poses[self.model.description.hand.frame]
-            corners = self.held_corners(held)
-            across = np.linalg.norm(corners - self.model.tip_from_grasp.position, axis=1).max()
-            padding = max(self.config.robot_padding, TURNED * float(across))
-            mask = LinkMask({"held": corners}, padding)
-            own |= mask.covers(points, {"held": tip})
-        return own
-
-    def hides(self, points: Array, joints: Array) -> bool:
-        """Whether a link hides one of points (n, 3), base frame, with the arm at joints (n,)."""
-        posed = dict(zip(self.model.group.names, joints, strict=True))
-        poses = self.model.link_poses(self.model.posture(posed, 0.0))
-        return bool(self._mask.covers(points, poses).any())
+    # asking
 
     def dropped(self, state: RobotState, held: HeldObject) -> Array:
         """Points (n, 2) of the floor, odom, on which what was held may lie; none over a surface."""
-        pose = self.model.link_poses(self.model.configuration(state))
-        tip = pose[self.model.description.hand.frame]
-        corners = self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
-        there = corners.mean(axis=0)
+        there = self.own.corners(state, held)[-1].mean(axis=0)
         odom = state.odom_from_base.apply(there)
         for support in self._supports(state):
             if support.height <= odom[2] and within(odom[None, :2], support.outline)[0]:
                 return np.empty((0, 2))
         front = max(x for x, _ in self.model.description.footprint)
         return dropped(state, there, max(held.object.size), front)
-
-    def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:
-        """Corners (n, 3) of the held object, in the tip's frame, m."""
-        tip_from_object = self.model.tip_from_grasp @ held.grasp_from_object
-        return tip_from_object.apply(object_corners(held.object, padding))
-
-    # asking
 
     def world(
         self,
@@ -302,9 +235,9 @@ class Scene:
         supports = self._supports(state)
         seen = self._uncovered(around.cells, supports[: len(around.supports)])
         tall = None if supposed is None else self._tall(state, supposed)
-        attached = None if held is None else Attached(self.held_corners(held))
+        attached = None if held is None else Attached(self.own.held_corners(held))
         return CollisionWorld(
-            self.body,
+            self.own.pairs,
             self.model.configuration(state, width),
             obstacles=[
                 *(s.obstacle(base_from_odom, f"support {i}") for i, s in enumerate(supports)),
@@ -319,13 +252,6 @@ class Scene:
             margin=margin,
             held_on_support=held_on_support,
         )
-
-    def overhang(self, state: RobotState, held: HeldObject | None) -> Array:
-        """See `BodyScene.overhang`."""
-        base = np.array(self.model.description.footprint)
-        height = self.model.description.height
-        parts = [part for part in self._corners(state, held) if part[:, 2].min() < height]
-        return outreach.overhang(parts, base)
 
     def solids(self, state: RobotState, hits: Array, reach: float) -> Array:
         """See `BodyScene.solids`."""

@@ -154,11 +154,11 @@ class PlanningSceneService(Service):
 
         below: parts of arm and held object that are entirely above this height, m, are left out.
         """
-        return self.scene.footprint(state, self.held, below)
+        return self.scene.own.footprint(state, self.held, below)
 
     def overhang(self, state: RobotState) -> Array:
         """See `BodyScene.overhang`."""
-        return self.scene.overhang(state, self.held)
+        return self.scene.own.overhang(state, self.held)
 
     def solids(self, state: RobotState, hits: Array, reach: float) -> Array:
         """See `BodyScene.solids`."""
@@ -171,7 +171,7 @@ class PlanningSceneService(Service):
 
     def is_robot(self, points: Array, state: RobotState) -> Any:
         """(n,) bool: which points (n, 3) in the base frame are on the robot or its held object."""
-        return self.scene.is_robot(points, state, self.held)
+        return self.scene.own.covers(points, state, self.held)
 
 
 def _scene(context: ServiceContext, config: SceneConfig) -> scene.Scene:
