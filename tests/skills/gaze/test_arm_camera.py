@@ -95,7 +95,9 @@ def test_the_way_there_meets_neither_the_table_nor_the_robot(scene_of: SceneOf, 
     table = [(x, y, z) for x in (0.6, 1.4) for y in (-0.7, 0.7) for z in (0.0, 0.72)]
     body = scene.scene
     world = CollisionWorld(
-        body.own.pairs, body.model.configuration(robot.state()), [Obstacle("table", np.array(table))]
+        body.own.pairs,
+        body.model.configuration(robot.state()),
+        [Obstacle("table", np.array(table))],
     )
     assert all(world.path_free(way) for way in ways(robot))
 

@@ -28,6 +28,9 @@ LEAST = 25
 """Fewest points for fitting sides."""
 INNER = 0.6
 """Points nearer to the axis than this share of the radius are on an end, not on the side."""
+END = 0.008
+"""Points so near to a thing's upper end, m, are on it, not on the side: seen from above, they are
+most, and their slice would be too narrow."""
 MISFIT = 0.004
 """Median distance of points to a fitted side up to which it explains them, m."""
 WIDEST = 90.0
@@ -144,6 +147,7 @@ def _round(thing: Solid, body: Array, high: float, eye: Array) -> Sides | None:
     radius = thing.size[0] / 2
     side = body[np.hypot(body[:, 0], body[:, 1]) > INNER * radius]
     if thing.category != "bowl":  # of a bowl the inside is seen
+        side = side[side[:, 2] < high - END]
         side = side[(side[:, :2] * (eye[:2] - side[:, :2])).sum(axis=1) > 0.0]
     found = fit_revolution(side) if len(side) >= LEAST else None
     if found is None or found.misfit > MISFIT:

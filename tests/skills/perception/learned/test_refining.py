@@ -48,6 +48,18 @@ def test_a_round_thing_gets_the_size_and_place_of_its_side(category: str, share:
     assert np.allclose(found.frame_from_object.position, true.position, atol=0.003)
 
 
+def test_the_top_of_a_can_that_is_seen_from_above_is_not_its_side() -> None:
+    true = Transform((0.1, 0.3, 0.045))
+    points, normals = cylinder(true, 0.042, 0.09)
+    draw = seeded("top")
+    away, bearing = 0.042 * np.sqrt(draw.uniform(size=600)), draw.uniform(-math.pi, math.pi, 600)
+    top = np.column_stack([away * np.cos(bearing), away * np.sin(bearing), np.full(600, 0.045)])
+    both = np.concatenate([points[:60], true.apply(top)])
+    up = np.concatenate([normals[:60], np.tile((0.0, 0.0, 1.0), (600, 1))])
+    found = refined(said("can", true, (0.084, 0.084, 0.09)), seen(both, up))
+    assert found.size[:2] == pytest.approx((0.084, 0.084), abs=0.004)
+
+
 def test_a_thing_that_stands_begins_at_the_surface_though_its_foot_is_hidden() -> None:
     true = Transform((0.1, 1.0, 0.06))
     points, normals = cylinder(true, 0.033, 0.12)
