@@ -21,6 +21,9 @@ from momantu_skills.perception.learned.targets import OFFSET_UNIT
 
 SHOWN = 0.5
 """Least probability that a cell shows a thing."""
+MIRRORED = 60_000
+"""Pixels of a crop up to which its mirror image is looked at too: of a larger one, which takes
+longest and shows things near by, it tells little more."""
 
 
 class Seeing:
@@ -70,25 +73,26 @@ class Seeing:
         return of_category, of_handle
 
     def _said(self, layers: NDArray[np.float32]) -> tuple[Array, Array, Array]:
-        """Chances (n, classes), coordinates (2, n, 3), offsets (n, 3) of all cells.
+        """Chances (n, classes), coordinates (k, n, 3), offsets (n, 3) of all cells.
 
-        The network sees the crop and its mirror image, and both answers count.
+        The network sees the crop and, up to MIRRORED pixels, its mirror image: k answers count.
 
         layers: (CHANNELS, h, w) of a crop.
         """
         before = torch.get_num_threads()
         torch.set_num_threads(1)
         try:
-            straight = self._answers(layers)
-            turned = self._answers(mirror(layers))
+            said = [self._answers(layers)]
+            if layers.shape[1] * layers.shape[2] <= MIRRORED:
+                said.append(_turned(self._answers(mirror(layers))))
         finally:
             torch.set_num_threads(before)
-        turned = [part[:, :, ::-1] for part in turned]
-        turned[1][1] *= -1.0
-        turned[2][0] *= -1.0
         chances, places, votes = (
-            np.stack(both).reshape(2, len(both[0]), -1).transpose(0, 2, 1).astype(np.float64)
-            for both in zip(straight, turned, strict=True)
+            np.stack(all_)
+            .reshape(len(said), len(all_[0]), -1)
+            .transpose(0, 2, 1)
+            .astype(np.float64)
+            for all_ in zip(*said, strict=True)
         )
         return chances.mean(axis=0), places, votes.mean(axis=0)
 
@@ -102,3 +106,11 @@ class Seeing:
                 part[0].contiguous().numpy()
                 for part in (scores.softmax(dim=1), coordinates, offsets)
             ]
+
+
+def _turned(answers: list[NDArray[np.float32]]) -> list[NDArray[np.float32]]:
+    """What was said of a mirror image, as said of the crop itself."""
+    chances, coordinates, offsets = (part[:, :, ::-1].copy() for part in answers)
+    coordinates[1] *= -1.0
+    offsets[0] *= -1.0
+    return [chances, coordinates, offsets]
