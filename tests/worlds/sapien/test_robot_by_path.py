@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -60,3 +62,20 @@ def test_without_what_a_simulator_needs_it_is_refused_with_what_to_write(
     bare = carter.model_copy(update={"simulation": None})
     with pytest.raises(WorldError, match=r"carter.*robot.yaml needs a section `simulation`"):
         Simulator(bare, plain_episode(table=False), 0, render=False)
+
+
+@pytest.mark.parametrize("role", ["visual", "collision"])
+def test_a_mesh_that_is_none_is_told_with_its_link_before_anything_moves(
+    role: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("MOMANTU_BT_CACHE", str(tmp_path / "cache"))
+    robot = tmp_path / "carter"
+    shutil.copytree(FILE.parent, robot)
+    (robot / "words.stl").write_text("these are words")
+    cart = (robot / "cart.urdf").read_text()
+    mesh = f'<geometry><mesh filename="{robot / "words.stl"}"/></geometry>'
+    shape, count = re.subn(f"(<{role}>.*?)<geometry>.*?</geometry>", rf"\1{mesh}", cart, count=1)
+    assert count
+    (robot / "cart.urdf").write_text(shape)
+    with pytest.raises(WorldError, match=rf"the {role} mesh .*words.stl of the link .* as a mesh"):
+        Simulator(read_robot(robot / "robot.yaml"), plain_episode(table=False), 0)

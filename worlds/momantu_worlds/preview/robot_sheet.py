@@ -15,7 +15,6 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import CameraSensor, RobotDescription
 from momantu_worlds.display.chase import looking
 from momantu_worlds.preview.robot_scene import robot_episode
-from momantu_worlds.sapien.build import robot_meshes
 from momantu_worlds.sapien.sensors.camera import OPTICAL_FROM_SAPIEN
 from momantu_worlds.sapien.sensors.camera_view import ViewCamera
 from momantu_worlds.sapien.simulator import Simulator
@@ -69,12 +68,11 @@ def robot_sheet(description: RobotDescription) -> bytes:
     """
     simulator = Simulator(description, robot_episode(description), seed=0)
     try:
-        with robot_meshes.drawn(description.urdf):
-            rows = [
-                (_titled(name, _pose(simulator, description, pose)), eye)
-                for name, pose in (description.named_poses or {AT_REST: {}}).items()
-                for eye in [_camera(simulator, description, pose)]
-            ]
+        rows = [
+            (_titled(name, _pose(simulator, description, pose)), eye)
+            for name, pose in (description.named_poses or {AT_REST: {}}).items()
+            for eye in [_camera(simulator, description, pose)]
+        ]
     finally:
         simulator.close()
     sheet = _sheet(rows)

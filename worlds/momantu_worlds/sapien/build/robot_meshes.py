@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
-from momantu_bt.formats.urdf import read_urdf
+import sapien
+
 from momantu_bt.world import WorldError
 
 CURE = (
@@ -19,34 +17,41 @@ CURE = (
 def built(builder: Any) -> Any:
     """The articulation of a builder whose base stands still.
 
+    Its visual meshes are read now: SAPIEN would read them for the first picture, and fail there.
+
     Raises:
-        WorldError: the file of a collision mesh cannot be read.
+        WorldError: the file of a mesh cannot be read.
     """
-    articulation = builder.build(fix_root_link=True)
+    try:
+        articulation = builder.build(fix_root_link=True)
+    except RuntimeError as error:
+        raise _named(builder, str(error)) or error from None
     for link in builder.link_builders:
-        shapes = articulation.find_link_by_name(link.name).get_collision_shapes()
+        made = articulation.find_link_by_name(link.name)
         meshes = [record.filename for record in link.collision_records if record.filename]
-        if meshes and len(shapes) < len(link.collision_records):
+        if meshes and len(made.get_collision_shapes()) < len(link.collision_records):
             raise _unreadable("collision", meshes[0], link.name)
+        for shape in _drawn(made):
+            try:
+                shape.parts  # noqa: B018  # reads the file
+            except RuntimeError:
+                raise _unreadable("visual", shape.filename, link.name) from None
     return articulation
 
 
-@contextmanager
-def drawn(urdf: Path) -> Iterator[None]:
-    """Say which visual mesh cannot be read: SAPIEN reads them for the first picture.
+def _named(builder: Any, words: str) -> WorldError | None:
+    """What is wrong, where SAPIEN's own words name the file of a visual mesh."""
+    for link in builder.link_builders:
+        for record in link.visual_records:
+            if record.filename and record.filename in words:
+                return _unreadable("visual", record.filename, link.name)
+    return None
 
-    Raises:
-        WorldError: it is one of the robot's.
-    """
-    try:
-        yield
-    except RuntimeError as error:
-        for link in read_urdf(urdf).root.findall("link"):
-            for mesh in link.findall("visual/geometry/mesh"):
-                if Path(mesh.get("filename", "")).name in str(error):
-                    file, name = mesh.get("filename", ""), link.get("name", "")
-                    raise _unreadable("visual", file, name) from None
-        raise
+
+def _drawn(link: Any) -> list[Any]:
+    """The render shapes of a link that come from files; none in a scene without a renderer."""
+    body = link.entity.find_component_by_type(sapien.render.RenderBodyComponent)
+    return [shape for shape in body.render_shapes if hasattr(shape, "filename")] if body else []
 
 
 def _unreadable(role: str, file: str, link: str) -> WorldError:
