@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from momantu_skills.gaze.unseen_ways import blind_spot, planned_in_sight
 from momantu_skills.manipulation.scene.site_obstacles import FAR, FloorPlan
 from momantu_skills.manipulation.scene.surroundings import KEPT, SeenSpace, Support
+from momantu_skills.manipulation.scene.swept import corners_along
 
 from momantu_bt.failure import FRAME_UNKNOWN, Failure
 from momantu_bt.geometry import Transform
@@ -265,3 +266,15 @@ def test_an_arm_that_was_held_up_on_its_way_to_look_plans_from_where_it_is(
     turning.strays = 0.4
     assert turning.plan(BLIND) == (BLIND, 2)
     assert turning.looked == []
+
+
+def test_an_arm_whose_links_have_no_shape_has_no_corners() -> None:
+    nobody: Any = SimpleNamespace()
+    assert corners_along(nobody, (), nobody, [np.zeros(2)] * 3).shape == (3, 0, 3)
+
+
+def test_without_corners_only_the_hand_counts() -> None:
+    bare = arm(looks(AHEAD))
+    bare.scene.own.along = lambda state, postures: np.empty((len(postures), 0, 3))
+    assert blind_spot(bare, way((0.6, 0.0, 0.8), (1.2, 0.4, 0.8))) is None
+    assert blind_spot(bare, BLIND) is not None

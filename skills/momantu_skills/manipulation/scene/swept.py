@@ -40,7 +40,12 @@ def swept(
 def corners_along(
     model: ArmModel, moving: Sequence[str], state: RobotState, postures: Sequence[Array]
 ) -> Array:
-    """Corners (k, n, 3), odom, of the links that the arm moves, at each of k postures (n,)."""
+    """Corners (k, n, 3), odom, of the links that the arm moves, at each of k postures (n,).
+
+    n is 0 where none of these links has a shape.
+    """
+    if not moving:
+        return np.empty((len(postures), 0, 3))
     corners = [_corners(model, _poses(model, moving, state, joints)) for joints in postures]
     odom = state.odom_from_base.apply(np.concatenate(corners))
     return np.asarray(odom.reshape(len(postures), -1, 3))
