@@ -11,6 +11,7 @@ from momantu_bt.failure import Failure
 from momantu_bt.geometry import Array
 from momantu_bt.messages import RobotState
 from momantu_bt.service import HeldObject
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.manipulation.scene.scene import Scene
 
 ENOUGH = math.radians(12.0)
@@ -60,13 +61,13 @@ def _in_the_way(scene: Scene, state: RobotState, held: HeldObject | None) -> lis
     poses = model.link_poses(model.configuration(state))
     camera = eye.tip_pose(np.array([state.position(name) for name in eye.names]))
     bodies = {
-        link: hull @ poses[link][:3, :3].T + poses[link][:3, 3]
+        link: placed(hull, poses[link])
         for link, hull in model.hulls.items()
         if link in model.beyond_eye
     }
     if held is not None:
         tip = poses[model.description.hand.frame]
-        bodies["held"] = scene.own.held_corners(held) @ tip[:3, :3].T + tip[:3, 3]
+        bodies["held"] = placed(scene.own.held_corners(held), tip)
     seen = (camera.inverse().apply(corners) for corners in bodies.values())
     outlines = (outline(corners) for corners in seen if not _around_lens(corners))
     return [found for found in outlines if found is not None]

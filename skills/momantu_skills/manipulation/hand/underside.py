@@ -8,6 +8,7 @@ from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import DetectedObject
 from momantu_skills.manipulation.arm import Arm
 from momantu_skills.manipulation.hand.resting import lies, rise
+from momantu_skills.manipulation.model.hulls import placed
 
 FINGERS = 0.06
 """Distance from the object up to which nothing stands where it is put down, m: the open fingers
@@ -38,10 +39,7 @@ def _underside(arm: Arm, thing: DetectedObject, base_from_object: Transform, q: 
     posed = dict(zip(arm.group.names, q, strict=True))
     poses = model.link_poses(model.posture({**arm.state.joints(), **posed}, arm.open_width))
     corners = np.vstack(
-        [
-            model.hulls[link] @ poses[link][:3, :3].T + poses[link][:3, 3]
-            for link in arm.scene.own.pairs.moving
-        ]
+        [placed(model.hulls[link], poses[link]) for link in arm.scene.own.pairs.moving]
     )
     away = np.linalg.norm(corners[:, :2] - base_from_object.position[:2], axis=1)
     wide = max(thing.size if lies(thing) else thing.size[:2]) / 2

@@ -170,6 +170,11 @@ def floor_outline(corners: Array) -> Array:
     return np.asarray(flat[ConvexHull(flat).vertices])
 
 
+def placed(points: Array, pose: Array) -> Array:
+    """Points (n, 3) of a frame whose pose is (4, 4), in the frame in which the pose is."""
+    return np.asarray(points @ pose[:3, :3].T + pose[:3, 3])
+
+
 def object_corners(thing: DetectedObject, padding: float = 0.0) -> Array:
     """Corners (n, 3) of an object's hull in its frame, enlarged by `padding` m on every side."""
     x, y, z = (edge + 2 * padding for edge in thing.size)

@@ -14,7 +14,12 @@ from momantu_bt.messages import RobotState
 from momantu_bt.service import HeldObject
 from momantu_skills.manipulation.model.arm_model import ArmModel
 from momantu_skills.manipulation.model.collision import BodyPairs, body_pairs
-from momantu_skills.manipulation.model.hulls import LinkMask, floor_outline, object_corners
+from momantu_skills.manipulation.model.hulls import (
+    LinkMask,
+    floor_outline,
+    object_corners,
+    placed,
+)
 from momantu_skills.manipulation.scene import outreach
 from momantu_skills.manipulation.scene.swept import corners_along
 
@@ -38,13 +43,10 @@ class OwnBody:
     def corners(self, state: RobotState, held: HeldObject | None) -> list[Array]:
         """Corners (n, 3) of each link, and at last of the held object."""
         poses = self.model.link_poses(self.model.configuration(state))
-        corners = [
-            hull @ poses[link][:3, :3].T + poses[link][:3, 3]
-            for link, hull in self.model.hulls.items()
-        ]
+        corners = [placed(hull, poses[link]) for link, hull in self.model.hulls.items()]
         if held is not None:
             tip = poses[self.model.description.hand.frame]
-            corners.append(self.held_corners(held) @ tip[:3, :3].T + tip[:3, 3])
+            corners.append(placed(self.held_corners(held), tip))
         return corners
 
     def held_corners(self, held: HeldObject, padding: float = 0.0) -> Array:

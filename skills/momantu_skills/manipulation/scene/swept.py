@@ -9,7 +9,7 @@ import numpy as np
 from momantu_bt.geometry import Array
 from momantu_bt.messages import RobotState
 from momantu_skills.manipulation.model.arm_model import ArmModel
-from momantu_skills.manipulation.model.hulls import LinkMask
+from momantu_skills.manipulation.model.hulls import LinkMask, placed
 from momantu_skills.manipulation.scene.columns import HALF_DIAGONAL
 
 
@@ -53,9 +53,7 @@ def corners_along(
 
 def _corners(model: ArmModel, poses: Mapping[str, Array]) -> Array:
     """Corners (n, 3), base frame, of the hulls of links at some poses."""
-    return np.vstack(
-        [model.hulls[link] @ pose[:3, :3].T + pose[:3, 3] for link, pose in poses.items()]
-    )
+    return np.vstack([placed(model.hulls[link], pose) for link, pose in poses.items()])
 
 
 def _raster(points: Array, edge: float) -> Array:
