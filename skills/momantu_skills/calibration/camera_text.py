@@ -32,7 +32,7 @@ def lines(pictures: Pictures, lens: Lens) -> list[str]:
     names = ("fx", "fy", "cx", "cy", *_NAMES[lens.model])
     return [
         f"{lens.used.sum()} pictures of {width} x {height} pixels count, of "
-        f"{len(pictures.names) + len(pictures.without)}; model {lens.model}",
+        f"{len(_all(pictures))}; model {lens.model}",
         f"error: {lens.error:.3f} px (root mean square)",
         *(
             f"  {name} {value:12.5f} ± {deviation:.5f}"
@@ -44,7 +44,7 @@ def lines(pictures: Pictures, lens: Lens) -> list[str]:
 
 
 def _pictures(pictures: Pictures, lens: Lens) -> list[str]:
-    width = max(map(len, (*pictures.names, *pictures.without)))
+    width = max(map(len, _all(pictures)))
     said = [f"{'picture':<{width}}     error      covers alone"]
     for name, error, used, share in zip(
         pictures.names, lens.errors, lens.used, gain(pictures, lens), strict=True
@@ -52,7 +52,13 @@ def _pictures(pictures: Pictures, lens: Lens) -> list[str]:
         alone = f"{100 * share:7.0f} %" if used else "  outlier, does not count"
         said.append(f"{name:<{width}}  {error:8.3f} px {alone}")
     said += [f"{name:<{width}}  no board" for name in pictures.without]
+    for name, (wide, high) in pictures.odd:
+        said.append(f"{name:<{width}}  {wide} x {high} pixels, does not count")
     return said
+
+
+def _all(pictures: Pictures) -> tuple[str, ...]:
+    return (*pictures.names, *pictures.without, *(name for name, _ in pictures.odd))
 
 
 def plain(pictures: Pictures, lens: Lens, doubts: list[str]) -> dict[str, Any]:
@@ -74,6 +80,7 @@ def plain(pictures: Pictures, lens: Lens, doubts: list[str]) -> dict[str, Any]:
             for name, error, used in zip(pictures.names, lens.errors, lens.used, strict=True)
         ],
         "without_board": list(pictures.without),
+        "of_another_size": [name for name, _ in pictures.odd],
         "notes": doubts,
     }
 

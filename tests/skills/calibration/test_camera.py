@@ -26,6 +26,7 @@ from tests.skills.scenery.boards import (
     picture,
     places,
     seen,
+    sheet,
 )
 
 CHARUCO = Board("charuco", 7, 5, 0.03, 0.022)
@@ -173,13 +174,17 @@ def test_pictures_of_a_charuco_board(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "8 pictures of 640 x 480 pixels count" in said
 
 
-def test_pictures_of_an_aprilgrid(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pictures = folder(tmp_path / "in", APRILGRID, 6)
+@pytest.mark.parametrize("kalibr", [False, True])
+def test_pictures_of_an_aprilgrid(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kalibr: bool
+) -> None:
+    pictures = folder(tmp_path / "in", APRILGRID, 6, kalibr)
     board = ("--board", "aprilgrid 4x3", "--square", "40mm", "--gap", "10mm")
     code, said = run(capsys, pictures, *board)
     assert code == 0, said
     assert "6 pictures of 640 x 480 pixels count" in said
     shown = read_pictures(pictures, APRILGRID)
+    assert all(len(each.indices) > 40 for each in shown.seen)
     lens = fit(APRILGRID, shown.seen, shown.size, Model.PINHOLE)
     assert lens.error < 0.15
     assert lens.matrix[0, 0] == pytest.approx(MATRIX[0, 0], rel=0.01)
@@ -243,6 +248,28 @@ def test_a_charuco_board_of_an_old_print_is_found() -> None:
     assert shown is not None
     assert len(shown.indices) == 30
     assert shown.pixels[0] == pytest.approx((40 + 60 - 0.5, 40 + 60 - 0.5), abs=0.3)
+
+
+def test_a_chessboard_with_a_narrow_rim_in_a_dark_place_is_found() -> None:
+    """Each square has 20 pixels; there is white for 3 pixels around the board, and then black."""
+    print_of = sheet(CHESSBOARD, 20)[17:-17, 17:-17] // 2
+    shown = find(CHESSBOARD, np.pad(print_of, 60))
+    assert shown is not None
+    first = 60 + 3 + 20 - 0.5
+    corners = first + 20.0 * np.mgrid[0:9, 0:6].T.reshape(-1, 2)
+    apart = np.linalg.norm(shown.pixels[:, None] - corners, axis=2).min(axis=1)
+    assert apart.max() < 0.3
+
+
+def test_single_pictures_of_another_size_do_not_count(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pictures = folder(tmp_path / "in", CHESSBOARD, 6)
+    cv2.imwrite(str(pictures / "00a.png"), np.zeros((481, 641), np.uint8))
+    code, said = run(capsys, pictures, *CHESS)
+    assert code == 0, said
+    assert "6 pictures of 640 x 480 pixels count, of 7" in said
+    assert "00a.png  641 x 481 pixels, does not count" in said
 
 
 @pytest.fixture(scope="module")

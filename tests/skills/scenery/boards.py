@@ -43,34 +43,46 @@ def seen(model: Model, noise: float, count: int = 14, seed: int = 0) -> list[See
     return found
 
 
-def sheet(board: Board, square: int = 40) -> Array:
-    """The printed board with a white rim of one square, `square` pixels for each."""
+def sheet(board: Board, square: int = 40, kalibr: bool = False) -> Array:
+    """The printed board with a white rim of one square, `square` pixels for each.
+
+    kalibr: an AprilGrid as Kalibr prints it.
+    """
     if board.kind == "charuco":
         family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
         size = (board.columns, board.rows)
         charuco = cv2.aruco.CharucoBoard(size, board.square, board.marker, family)
         image = charuco.generateImage((board.columns * square, board.rows * square))
     elif board.kind == "aprilgrid":
-        image = tags(board, square)
+        image = tags(board, square, kalibr)
     else:
         dark = np.indices((board.rows + 1, board.columns + 1)).sum(axis=0) % 2 == 0
         image = np.kron(np.where(dark, 0, 255), np.ones((square, square))).astype(np.uint8)
     return np.pad(np.asarray(image), square, constant_values=255)
 
 
-def tags(board: Board, edge: int) -> Array:
-    """The tags of an AprilGrid, `edge` pixels for each; its gap is a quarter of a tag."""
-    step = edge + edge // 4
+def tags(board: Board, edge: int, kalibr: bool = False) -> Array:
+    """The tags of an AprilGrid, `edge` pixels for each; its gap is a quarter of a tag.
+
+    kalibr: their border is two cells wide, and black squares touch their corners.
+    """
+    gap = edge // 4
+    step = edge + gap
     image = np.full((board.rows * step, board.columns * step), 255, dtype=np.uint8)
     for index in range(board.columns * board.rows):
         row, column = divmod(index, board.columns)
         top, left = (board.rows - 1 - row) * step, column * step
-        cells = np.kron(tag_cells(index)[1:-1, 1:-1], np.ones((edge // 8, edge // 8)))
-        image[top : top + edge, left : left + edge] = np.where(cells > 0, 255, 0)
+        cells = np.pad(tag_cells(index)[1:-1, 1:-1], 1 if kalibr else 0)
+        drawn = np.kron(cells, np.ones((edge // len(cells),) * 2))
+        image[top : top + edge, left : left + edge] = np.where(drawn > 0, 255, 0)
+        if kalibr:
+            image[top + edge : top + step, left + edge : left + step] = 0
     return image
 
 
-def picture(board: Board, turn: Array, shift: Array, square: int = 40) -> Array:
+def picture(
+    board: Board, turn: Array, shift: Array, square: int = 40, kalibr: bool = False
+) -> Array:
     """A picture (480, 640) of the board by a pinhole camera without distortion."""
     rotation, _ = cv2.Rodrigues(turn)
     # middles of the sheet's pixels to metres of the board, from its first inner corner
@@ -78,13 +90,13 @@ def picture(board: Board, turn: Array, shift: Array, square: int = 40) -> Array:
     onto = np.diag([scale, scale, 1.0])
     onto[:2, 2] = 0.5 * scale - (2 if board.kind == "chessboard" else 1) * board.square
     away = MATRIX @ np.column_stack([rotation[:, 0], rotation[:, 1], shift]) @ onto
-    flat = cv2.warpPerspective(sheet(board, square), away, SIZE, borderValue=(128,))
+    flat = cv2.warpPerspective(sheet(board, square, kalibr), away, SIZE, borderValue=(128,))
     return np.asarray(cv2.GaussianBlur(flat, (3, 3), 0.7))
 
 
-def folder(path: Path, board: Board, count: int) -> Path:
+def folder(path: Path, board: Board, count: int, kalibr: bool = False) -> Path:
     """A folder of pictures of a board."""
     path.mkdir(exist_ok=True)
     for index, (turn, shift) in enumerate(places(1, count)):
-        cv2.imwrite(str(path / f"{index:02}.png"), picture(board, turn, shift))
+        cv2.imwrite(str(path / f"{index:02}.png"), picture(board, turn, shift, kalibr=kalibr))
     return path

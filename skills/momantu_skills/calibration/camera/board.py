@@ -60,7 +60,10 @@ class Board:
         return np.column_stack([grid * self.square, np.zeros(len(grid))])
 
     def _corners_of_tags(self) -> Array:
-        """Four corners of each tag. As Kalibr prints it, tag 0 is at the bottom left; y is up."""
+        """Four corners of each tag. As Kalibr prints it, tag 0 is at the bottom left; y is up.
+
+        Of the black square: Kalibr's border is two cells wide, that of other prints one.
+        """
         cells = np.mgrid[0 : self.columns, 0 : self.rows].T.reshape(-1, 1, 2)
         flat = cells * (self.square + self.gap) + (UNIT_CORNERS + 0.5) * self.square
         return np.column_stack([flat.reshape(-1, 2), np.zeros(4 * len(cells))])
@@ -132,11 +135,17 @@ def size_of_chessboard(gray: NDArray[np.uint8]) -> tuple[int, int] | None:
 
 
 def _find_corners(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
+    """By one detector after the other: each finds boards that the others miss."""
     size = (board.columns, board.rows)
-    for more in (0, cv2.CALIB_CB_ACCURACY):  # the second enlarges the picture: small boards, slowly
-        found, corners = cv2.findChessboardCornersSB(
-            gray, size, None, cv2.CALIB_CB_NORMALIZE_IMAGE | more
-        )
+    normal = cv2.CALIB_CB_NORMALIZE_IMAGE
+    for detect, flags in (
+        (cv2.findChessboardCornersSB, normal),
+        # by quadrilaterals: narrow rims, dim or small boards, bent ones of a fisheye
+        (cv2.findChessboardCorners, normal | cv2.CALIB_CB_ADAPTIVE_THRESH),
+        # in the picture enlarged: slow
+        (cv2.findChessboardCornersSB, normal | cv2.CALIB_CB_ACCURACY),
+    ):
+        found, corners = detect(gray, size, None, flags)
         if found:
             grid = np.asarray(corners, dtype=float).reshape(board.rows, board.columns, 2)
             pixels = _refined(gray, grid)
@@ -172,7 +181,8 @@ def _find_charuco(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
 
 
 def _find_tags(board: Board, gray: NDArray[np.uint8]) -> Seen | None:
-    found = detector.tags_in(gray)
+    plain, wide = detector.tags_in(gray), detector.wide_tags_in(gray)
+    found = plain if len(plain) >= len(wide) else wide
     own = sorted(each for each in found if each < board.columns * board.rows)
     if 4 * len(own) < _LEAST_POINTS:
         return None

@@ -94,6 +94,16 @@ def tags_in(gray: NDArray[np.uint8], family: TagFamily = USUAL_FAMILY) -> dict[i
     return _by_id(_detect(levels(light_of([gray])), (family,), WRONG_BITS))
 
 
+def wide_tags_in(gray: NDArray[np.uint8]) -> dict[int, Array]:
+    """As `tags_in`, of the usual family with a border of two cells: those of Kalibr's AprilGrids.
+
+    Black squares touch the corners of these tags. The picture is made brighter, so that what blur
+    leaves between two of them counts as white.
+    """
+    bright = np.sqrt(255.0 * gray).astype(np.uint8)
+    return _by_id(_kept(_wide_detector(), bright, WRONG_BITS))
+
+
 def _by_id(found: Sequence[Detection]) -> dict[int, Array]:
     """The larger of those with one id."""
     return {each.tag_id: each.corners for each in reversed(found)}
@@ -102,8 +112,14 @@ def _by_id(found: Sequence[Detection]) -> dict[int, Array]:
 def _detect(
     light: NDArray[np.uint8], families: Sequence[TagFamily], wrong_bits: int
 ) -> list[Detection]:
+    return _kept(_detector(tuple(sorted(set(families)))), light, wrong_bits)
+
+
+def _kept(
+    detector: pyapriltags.Detector, light: NDArray[np.uint8], wrong_bits: int
+) -> list[Detection]:
     found = []
-    for each in _detector(tuple(sorted(set(families)))).detect(np.ascontiguousarray(light)):
+    for each in detector.detect(np.ascontiguousarray(light)):
         family = cast(TagFamily, each.tag_family.decode())
         most = 0 if family in EXACT else wrong_bits
         if each.hamming <= most and each.decision_margin >= LEAST_MARGIN:
@@ -134,11 +150,34 @@ def _detector(families: tuple[TagFamily, ...]) -> pyapriltags.Detector:
     pyapriltags itself always prepares for two wrong bits, which takes minutes and gigabytes for the
     large families; so the families are added here, as it does it.
     """
-    detector = pyapriltags.Detector(families="", nthreads=1, quad_decimate=1.0)
-    library: Any = detector.libc
+    detector = _empty()
     for name in families:
-        family = getattr(library, f"{name}_create")()
-        bits = 0 if name in LARGE or name in EXACT else WRONG_BITS
-        library.apriltag_detector_add_family_bits(detector.tag_detector_ptr, family, bits)
-        detector.tag_families[name] = family
+        family = getattr(detector.libc, f"{name}_create")()
+        _enter(detector, name, family, 0 if name in LARGE or name in EXACT else WRONG_BITS)
     return detector
+
+
+@lru_cache(maxsize=1)
+def _wide_detector() -> pyapriltags.Detector:
+    """A detector of the usual family with a border of two cells."""
+    detector = _empty()
+    family = getattr(detector.libc, f"{USUAL_FAMILY}_create")()
+    layout = family.contents
+    layout.width_at_border += 2
+    layout.total_width += 2
+    for bit in range(layout.nbits):
+        layout.bit_x[bit] += 1
+        layout.bit_y[bit] += 1
+    _enter(detector, USUAL_FAMILY, family, WRONG_BITS)
+    return detector
+
+
+def _empty() -> pyapriltags.Detector:
+    return pyapriltags.Detector(families="", nthreads=1, quad_decimate=1.0)
+
+
+def _enter(detector: pyapriltags.Detector, name: TagFamily, family: Any, bits: int) -> None:
+    """Make a detector look for a family, with so many bits that may be wrong."""
+    library: Any = detector.libc
+    library.apriltag_detector_add_family_bits(detector.tag_detector_ptr, family, bits)
+    detector.tag_families[name] = family
