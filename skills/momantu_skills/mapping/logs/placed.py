@@ -13,11 +13,14 @@ import numpy as np
 from momantu_bt.formats.names import counted
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import LaserScan
+from momantu_skills.mapping.logs import by_scans
 from momantu_skills.mapping.logs.cleaning import alike, backwards, is_place, no_return
 from momantu_skills.mapping.logs.log import Log, LogError, LoggedScan
 from momantu_skills.mapping.logs.transforms import Transforms, plain
 from momantu_skills.navigation.map.sensing import Rays
 
+FEWEST_MATCHED = 0.8
+"""Least share of scans that have to fit those before, where they alone tell how the base moved."""
 LEVEL = 0.985
 """Least cosine of the angle between the laser's axis and the vertical: 10 degrees."""
 
@@ -59,7 +62,7 @@ def pose_of(position: Sequence[float], quaternion: Sequence[float]) -> Transform
 
 
 def placed(path: Path, told: Published) -> Log:
-    """The scans with odometry, oldest first.
+    """The scans with odometry, oldest first. Where none is told, the scans tell how the base moved.
 
     Raises:
         LogError: nothing tells how the base moved, the laser is not level, or the clock runs back.
@@ -67,9 +70,8 @@ def placed(path: Path, told: Published) -> Log:
     frame = plain(told.scans[0].frame)
     _check_angles(path, told.scans[0])
     found_base = moving(frame, told.scans[0].stamp, told)
-    if found_base is None:
-        raise _motionless(path, frame, told)
-    odom, base, notes = found_base.odom, found_base.base, list(found_base.notes)
+    base = told.transforms.carrier(frame) if found_base is None else found_base.base
+    notes = [] if found_base is None else list(found_base.notes)
     if told.broken:
         notes.append(broken_poses(told))
     scans, odd = alike(path, told.scans, lambda scan: scan.ranges.size)
@@ -78,20 +80,56 @@ def placed(path: Path, told: Published) -> Log:
     notes += backwards(stamps, lambda _, said, cure: LogError(f"{path}: {said}\n  {cure}"))
     ranges = np.concatenate([scan.ranges for scan in scans])
     farthest = no_return(ranges) if np.isfinite(ranges).all() else math.inf
-    found = []
+    seen = []
     for scan in scans:
-        odom_from_base = told.transforms.moved(base, scan.stamp)
-        if odom_from_base is None:
-            continue
-        seen = replace(scan, range_max=min(scan.range_max, farthest))
-        rays = Rays.from_scan(seen, _mount(path, told.transforms, base, frame, scan.stamp))
-        found.append(LoggedScan(scan.stamp, Pose2D.from_transform(odom_from_base), rays))
+        limited = replace(scan, range_max=min(scan.range_max, farthest))
+        mount = _mount(path, told.transforms, base, frame, scan.stamp)
+        seen.append((scan.stamp, Rays.from_scan(limited, mount)))
+    if found_base is None:
+        return _by_scans(path, frame, told, seen, notes)
+    return _by_odometry(path, found_base, told, seen, notes)
+
+
+def _by_odometry(
+    path: Path,
+    base: Moving,
+    told: Published,
+    seen: Sequence[tuple[float, Rays]],
+    notes: Sequence[str],
+) -> Log:
+    """seen: stamps, s, and beams in base."""
+    found = []
+    for stamp, rays in seen:
+        odom_from_base = told.transforms.moved(base.base, stamp)
+        if odom_from_base is not None:
+            found.append(LoggedScan(stamp, Pose2D.from_transform(odom_from_base), rays))
     if not found:
-        raise LogError(f"{path}: the stamps of the scans and of {odom!r} do not overlap")
-    if len(found) < len(scans):
-        without = counted(len(scans) - len(found), "scan")
-        notes.append(f"left out {without} at whose time no odometry is told")
-    return Log(tuple(found), tuple(notes))
+        raise LogError(f"{path}: the stamps of the scans and of {base.odom!r} do not overlap")
+    if len(found) == len(seen):
+        return Log(tuple(found), tuple(notes))
+    without = counted(len(seen) - len(found), "scan")
+    said = f"left out {without} at whose time no odometry is told"
+    return Log(tuple(found), (*notes, said))
+
+
+def _by_scans(
+    path: Path,
+    frame: str,
+    told: Published,
+    seen: Sequence[tuple[float, Rays]],
+    notes: Sequence[str],
+) -> Log:
+    """seen: stamps, s, and beams in base."""
+    ways = by_scans.reckoned(seen)
+    if ways.matched < FEWEST_MATCHED * len(seen):
+        raise _motionless(path, frame, told, len(seen) - ways.matched, len(seen))
+    said = (
+        "nothing tells how the base moved, so the scans do, each laid on those before; along bare "
+        "corridors they do not show how far it went"
+    )
+    poses = zip(seen, ways.odom_from_base, strict=True)
+    found = tuple(LoggedScan(stamp, pose, rays) for (stamp, rays), pose in poses)
+    return Log(found, (*notes, said))
 
 
 def broken_poses(told: Published) -> str:
@@ -141,12 +179,13 @@ def moving(frame: str, stamp: float, told: Published) -> Moving | None:
     return Moving(odom, base, (said,))
 
 
-def _motionless(path: Path, frame: str, told: Published) -> LogError:
+def _motionless(path: Path, frame: str, told: Published, lost: int, count: int) -> LogError:
     broken = f"; {counted(told.broken, 'pose')} left out, which are none" if told.broken else ""
     return LogError(
-        f"{path}: nothing tells how the base moved: above the laser's frame are "
-        f"{' on '.join(told.transforms.above(frame))}, of which none is odometry; expected a "
-        f"transform to a frame 'odom' (/tf), or messages nav_msgs/Odometry{broken}"
+        f"{path}: nothing tells how the base moved: {lost} of {count} scans do not fit those "
+        f"before, and above the laser's frame are {' on '.join(told.transforms.above(frame))}, of "
+        "which none is odometry; expected a transform to a frame 'odom' (/tf), or messages "
+        f"nav_msgs/Odometry{broken}"
     )
 
 

@@ -47,6 +47,11 @@ class Transforms:
             chain.append(edge.parent)
         return chain
 
+    def carrier(self, frame: str) -> str:
+        """The highest frame on which a frame never moves; itself, if it sits on none."""
+        chain = self.above(frame)
+        return next((each for each in chain[:-1] if not self.still(each)), chain[-1])
+
     def moved(self, frame: str, stamp: float) -> Transform | None:
         """`parent_from_frame` between two known ones; None outside them and in a long gap."""
         poses = self._edges[plain(frame)].poses

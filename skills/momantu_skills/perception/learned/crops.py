@@ -55,6 +55,11 @@ class Crop:
     rows: NDArray[np.int64]
     columns: NDArray[np.int64]
 
+    def shown(self) -> Array:
+        """The points (n, 3) of its cells of 2x2 pixels that have depth, in `level`, m."""
+        points = self.points[::2, ::2].reshape(-1, 3).astype(np.float64)
+        return points[np.isfinite(points[:, 2])]
+
 
 def level_frame(odom_from_camera: Transform, height: float) -> Transform:
     """`odom_from_level` of a camera above a surface at a height, m."""

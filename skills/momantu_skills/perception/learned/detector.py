@@ -19,7 +19,15 @@ from momantu_skills.perception.objects.matching import MatchConfig, score
 from momantu_skills.perception.objects.shapes import Shape
 
 with lazily():
-    from momantu_skills.perception.learned import confidence, crops, fusing, seeing, solids, weights
+    from momantu_skills.perception.learned import (
+        completing,
+        confidence,
+        crops,
+        fusing,
+        seeing,
+        solids,
+        weights,
+    )
     from momantu_skills.perception.learned import standing as surfaces
 
 WEIGHTS = "MOMANTU_BT_LEARNED_WEIGHTS"
@@ -28,6 +36,8 @@ TOLERANCES = MatchConfig(relative=0.15, absolute=0.010)
 """Its sizes are less exact than those of a fitted shape."""
 UNLIKELY = 0.6
 """Factor on the score of a thing that is hardly right by itself; of a likely one it is 1."""
+SPEAKING = 2
+"""Least number of asked sizes by which a thing of a less likely category may be the asked one."""
 
 
 class _Categories:
@@ -81,11 +91,31 @@ class LearnedDetector:
         looks = [look for view in views if (look := self._look(view, low, high)) is not None]
         if not looks:
             return None
-        stamp = max(look.stamp for look in looks)
-        height = fusing.height(looks)
-        found = [self._object(thing, height, stamp, asked) for thing in fusing.fused(looks)]
+        height, stamp = fusing.height(looks), max(look.stamp for look in looks)
+        things = fusing.fused(looks)
+        found = [self._object(thing, height, stamp, asked) for thing in things]
+        if all(one.score < self.accepted for one in found):
+            pairs = zip(things, found, strict=True)
+            found = [self._whole(thing, one, looks, asked) or one for thing, one in pairs]
         found.sort(key=lambda thing: -thing.score)
         return tuple(found)
+
+    def _whole(
+        self,
+        thing: solids.Solid,
+        found: DetectedObject,
+        looks: Sequence[fusing.Look],
+        asked: ObjectClass,
+    ) -> DetectedObject | None:
+        """A thing as the asked one of which a part is hidden; None if it does not fit as such."""
+        symmetry = header.categories(self.path or weights.BUNDLED)[asked.category]
+        level = found.support_height
+        whole = completing.completed(thing, asked, symmetry, looks, level)
+        if whole is None:
+            return None
+        made = self._object(whole[0], level, found.pose.stamp, asked)
+        made = replace(made, score=made.score * whole[1] * _alike(thing, asked))
+        return made if made.score >= self.accepted else None
 
     def _check(self, category: str) -> None:
         """Raise an error if the weights cannot be used, or do not know a category."""
@@ -120,7 +150,14 @@ class LearnedDetector:
         if self._seeing is None:
             self._seeing = seeing.Seeing(self.path or weights.BUNDLED)
         solids = tuple(thing.moved(crop.odom_from_level) for thing in self._seeing.solids(crop))
-        return fusing.Look(surface.height, surface.area, image.stamp, solids)
+        return fusing.Look(
+            surface.height,
+            surface.area,
+            image.stamp,
+            solids,
+            surface.odom_from_camera.position,
+            crop.odom_from_level.apply(crop.shown()),
+        )
 
     def _object(
         self, thing: solids.Solid, height: float, stamp: float, asked: ObjectClass
@@ -129,10 +166,11 @@ class LearnedDetector:
         pose = thing.frame_from_object
         x, y, _ = pose.position.tolist()
         shape = Shape(kind, thing.category, (x, y), pose.yaw, thing.size, 0.0, 0.0, 0.0)
-        known = replace(TOLERANCES, categories=self.categories)
-        worth = score(shape, asked, known) * (
-            UNLIKELY + (1.0 - UNLIKELY) * confidence.chance(thing)
+        known = replace(
+            TOLERANCES, categories=self.categories, category_weight=_alike(thing, asked)
         )
+        certain = UNLIKELY + (1.0 - UNLIKELY) * confidence.chance(thing)
+        worth = certain * score(shape, asked, known)
         return DetectedObject(
             category=asked.category if worth >= TOLERANCES.accepted else thing.category,
             pose=Pose(pose, ODOM, stamp),
@@ -141,3 +179,16 @@ class LearnedDetector:
             score=worth,
             support_height=height,
         )
+
+
+def _alike(thing: solids.Solid, asked: ObjectClass) -> float:
+    """Factor on the score of a thing of another category: 1 if the asked one is as likely.
+
+    That holds if sizes speak for the asked one too, at least SPEAKING of them.
+    """
+    least = TOLERANCES.category_weight
+    sizes = (asked.diameter, asked.width, asked.depth, asked.height)
+    if sum(size is not None for size in sizes) < SPEAKING:
+        return least
+    likely = thing.chances.get(asked.category, 0.0) / max(thing.sure, 1e-9)
+    return least + (1.0 - least) * min(1.0, likely)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from momantu_bt.geometry import Transform
+from momantu_bt.geometry import Array, Transform
 from momantu_skills.perception.learned.solids import Solid
 
 SAME = 0.035
@@ -21,12 +21,17 @@ WHOLE = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
-    """One view: height (m, odom) and visible area (m2) of the surface, and the things, in odom."""
+    """One view: height (m, odom) and visible area (m2) of the surface, and the things, in odom.
+
+    eye: (3,) the camera's place, and points: (n, 3) what it sees on the surface, m in odom.
+    """
 
     height: float
     area: float
     stamp: float
     solids: tuple[Solid, ...]
+    eye: Array = field(default_factory=lambda: np.zeros(3))
+    points: Array = field(default_factory=lambda: np.empty((0, 3)))
 
 
 def height(looks: Sequence[Look]) -> float:
@@ -74,7 +79,8 @@ def _one(group: Sequence[Solid]) -> Solid:
     x, y, z = (weights @ np.array([solid.size for solid in like])).tolist()
     pose = Transform(position, best.frame_from_object.quaternion)
     cells = sum(solid.cells for solid in like)
-    return replace(best, frame_from_object=pose, size=(x, y, z), cells=cells)
+    points = np.concatenate([solid.points for solid in like])
+    return replace(best, frame_from_object=pose, size=(x, y, z), cells=cells, points=points)
 
 
 def _best(group: Sequence[Solid]) -> Solid:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,7 @@ class Seeing:
         for number, thing in things.items():
             mine = owner == number
             seen = Seen(points[mine], normals[mine], of_handle[mine], around, crop.eye)
-            found.append(refined(thing, seen))
+            found.append(replace(refined(thing, seen), points=points[mine]))
         return found
 
     def _of_category(self, chances: Array) -> tuple[Array, NDArray[np.bool_]]:

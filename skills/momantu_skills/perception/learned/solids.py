@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,9 @@ class Solid:
     """A thing. frame_from_object: z is its axis, the origin the middle of its box.
 
     size: (3,) m, without a handle. cells: their number. sure: mean probability of its category.
-    agreeing: share of the coordinates that its pose and size explain. symmetry: of its category.
-    handle: whether a mug's is seen, towards +x.
+    agreeing: share of the coordinates that its pose and size explain. told: symmetry of its
+    category. handle: whether a mug's is seen, towards +x. chances: mean probability of each
+    category. points: (n, 3) those that show it, m in the frame.
     """
 
     category: str
@@ -43,6 +44,8 @@ class Solid:
     handle: bool
     agreeing: float = 1.0
     told: Symmetry | None = None
+    chances: Mapping[str, float] = field(default_factory=dict)
+    points: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     @property
     def symmetry(self) -> Symmetry:
@@ -56,7 +59,11 @@ class Solid:
 
     def moved(self, target_from_frame: Transform) -> Solid:
         """The same in another frame that is level too."""
-        return replace(self, frame_from_object=target_from_frame @ self.frame_from_object)
+        return replace(
+            self,
+            frame_from_object=target_from_frame @ self.frame_from_object,
+            points=target_from_frame.apply(self.points),
+        )
 
 
 def solid(
@@ -95,7 +102,8 @@ def solid(
     pose = Transform.from_rotation(turn, shift)
     agreeing = float(found.fitting.mean())
     sure = float(mean.max())
-    return Solid(category, pose, (x, y, z), count, sure, handle, agreeing, symmetry)
+    of_each = dict(zip(categories, mean.tolist(), strict=True))
+    return Solid(category, pose, (x, y, z), count, sure, handle, agreeing, symmetry, of_each)
 
 
 def _extent(body: Array, symmetry: Symmetry) -> Array:
