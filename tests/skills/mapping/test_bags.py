@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -97,8 +98,10 @@ def test_a_laser_that_hangs_upside_down_sees_left_on_its_left(tmp_path) -> None:
     assert np.abs(read.points() - there).max() < 1e-5
 
 
-def test_without_a_mount_the_laser_is_taken_to_be_in_the_middle(tmp_path) -> None:
-    found = read_log(ros2(tmp_path / "way", by_odometry(mounted=False)))
+@pytest.mark.parametrize("messages", [by_odometry(mounted=False), by_tf()[1:]])
+def test_without_a_mount_the_laser_is_taken_to_be_in_the_middle(messages, tmp_path) -> None:
+    found = read_log(ros2(tmp_path / "way", messages))
+    assert len(found.scans) == len(WAY)
     assert "nothing tells where 'laser' sits on 'base_link'" in found.notes[0]
     assert np.array_equal(found.scans[0].rays.origin, [0.0, 0.0])
 
@@ -120,11 +123,34 @@ def _backwards() -> list[Message]:
     return [(topic, kind, FIRST + n, told) for n, (topic, kind, _, told) in enumerate(messages)]
 
 
+def _unlike() -> list[LoggedScan]:
+    """Scans that have nothing in common."""
+    noise = np.random.default_rng(0)
+    return [
+        replace(each, rays=replace(each.rays, ranges=noise.uniform(1.0, 9.0, each.rays.hit.size)))
+        for each in WAY[:25]
+    ]
+
+
+def test_without_odometry_the_scans_tell_how_the_base_moved(tmp_path) -> None:
+    mount = frame("base_link", "laser", FIRST, MOUNT, "/tf_static")
+    way = logged(driven(ROUND[:2], 0.1), 3)
+    found = read_log(ros2(tmp_path / "way", [mount, *(scan(each) for each in way)]))
+    assert "nothing tells how the base moved, so the scans do" in found.notes[0]
+    assert len(found.scans) == len(way)
+    assert np.allclose(found.scans[0].rays.origin, [0.2, 0.0])
+    end = found.scans[-1].odom_from_base
+    assert (end.x, end.y) == pytest.approx((12.4, 0.0), abs=0.3)
+
+
 @pytest.mark.parametrize(
     ("messages", "said"),
     [
         (lambda: [odometry(each) for each in WAY], "holds no sensor_msgs/LaserScan; it holds nav_"),
-        (lambda: [scan(each) for each in WAY], "nothing tells how the base moved"),
+        (
+            lambda: [scan(each) for each in _unlike()],
+            r"nothing tells how the base moved: \d+ of 25 scans do not fit those before",
+        ),
         (_backwards, "the clock runs backwards"),
         (
             lambda: [
@@ -181,8 +207,9 @@ def test_poses_that_are_none_are_left_out(x, w, tmp_path) -> None:
     assert all(abs(each.odom_from_base.x) < 100.0 for each in log.scans)
     assert log.notes == ("left out 1 pose whose numbers are not finite, or no pose's",)
     lost = _edited(messages, "Odometry", **_lost(x, w))
-    with pytest.raises(LogError, match=f"; {len(WAY)} poses left out, which are none"):
-        read_log(ros2(tmp_path / "all", lost))
+    without = read_log(ros2(tmp_path / "all", lost))
+    assert f"left out {len(WAY)} poses" in without.notes[0]
+    assert "so the scans do" in without.notes[-1]
 
 
 @pytest.mark.parametrize("increment", [np.nan, 0.0, 1.0])
@@ -208,6 +235,21 @@ def test_a_file_that_only_calls_itself_a_bag_is_told(content, tmp_path) -> None:
     path.write_bytes(content)
     with pytest.raises(LogError, match="cannot be read"):
         read_log(path)
+
+
+def test_a_bag_that_was_not_fetched_is_told(tmp_path) -> None:
+    pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 5\n"
+    (tmp_path / "way.bag").write_bytes(pointer)
+    with pytest.raises(LogError, match=r"way.bag is a pointer of Git LFS.*`git lfs pull`"):
+        read_log(tmp_path / "way.bag")
+    bag = ros2(tmp_path / "way", by_tf())
+    file = next(bag.glob("*.db3"))
+    file.write_bytes(pointer)
+    with pytest.raises(LogError, match=r"\.db3 is a pointer of Git LFS"):
+        read_log(bag)
+    file.unlink()
+    with pytest.raises(LogError, match=r"files are missing: .*metadata.yaml names them"):
+        read_log(bag)
 
 
 def test_a_folder_without_a_log_is_told(tmp_path) -> None:

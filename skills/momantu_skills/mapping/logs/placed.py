@@ -167,13 +167,16 @@ def moving(frame: str, stamp: float, told: Published) -> Moving | None:
     for below, above in itertools.pairwise(chain):
         if above in {plain(odom) for odom, *_ in told.odometry} or "odom" in above.lower():
             return Moving(above, below)
-    if not told.odometry:
+    if told.odometry:
+        odom, base = plain(told.odometry[0][0]), plain(told.odometry[0][1])
+        for _, _, when, pose in told.odometry:
+            told.transforms.add(odom, base, when, pose)
+        if base in chain:
+            return Moving(odom, base)
+    elif (pair := told.transforms.in_odometry()) is not None:
+        odom, base = pair
+    else:
         return None
-    odom, base = plain(told.odometry[0][0]), plain(told.odometry[0][1])
-    for _, _, when, pose in told.odometry:
-        told.transforms.add(odom, base, when, pose)
-    if base in chain:
-        return Moving(odom, base)
     told.transforms.add(base, frame, stamp, Transform())
     said = f"nothing tells where {frame!r} sits on {base!r}; taken to be at its middle, ahead"
     return Moving(odom, base, (said,))

@@ -20,6 +20,8 @@ RECORD = "run.mcap"
 _ROS1, _MCAP, _SQLITE = b"#ROSBAG V", b"\x89MCAP0\r\n", b"SQLite format 3\0"
 _ROS2_PROFILE = b"ros2"
 _HEAD = 64
+_POINTER = b"version https://git-lfs"
+"""What Git LFS leaves in the place of a large file that was not fetched."""
 
 
 def read_log(path: Path, topic: str | None = None) -> Log:
@@ -61,8 +63,14 @@ def _is_bag(path: Path) -> bool:
     """Whether a log is a bag of ROS 1 or 2.
 
     Raises:
-        LogError: it cannot be read, or is a folder without a log.
+        LogError: it cannot be read, was not fetched, or is a folder without a log.
     """
+    for file in [path] if not path.is_dir() else sorted(path.iterdir()):
+        if file.is_file() and _head(file).startswith(_POINTER):
+            raise LogError(
+                f"{file} is a pointer of Git LFS, and not the log itself; `git lfs pull` in its "
+                "repository fetches it"
+            )
     if not path.is_dir():
         head = _head(path)
         second = head.startswith(_SQLITE) or (head.startswith(_MCAP) and _ROS2_PROFILE in head)

@@ -48,10 +48,10 @@ def opened(path: Path) -> Iterator[Any]:
         with rosbag1.Reader(path) if _first_of_ros(path) else rosbag2.Reader(path) as reader:
             yield reader
     except (*broken, *damaged) as error:
-        raise LogError(
-            f"the bag {path} cannot be read: {error}; a bag that was cut off is mended by "
-            "`rosbag reindex` (ROS 1) or `ros2 bag reindex`"
-        ) from None
+        cure = "a bag that was cut off is mended by `rosbag reindex` (ROS 1) or `ros2 bag reindex`"
+        if "files are missing" in str(error):
+            cure = "metadata.yaml names them: put them beside it"
+        raise LogError(f"the bag {path} cannot be read: {error}; {cure}") from None
 
 
 def _first_of_ros(path: Path) -> bool:

@@ -52,6 +52,11 @@ class Transforms:
         chain = self.above(frame)
         return next((each for each in chain[:-1] if not self.still(each)), chain[-1])
 
+    def in_odometry(self) -> tuple[str, str] | None:
+        """The frame of odometry, by its name, and the first one that moves in it; None without."""
+        pairs = ((edge.parent, child) for child, edge in self._edges.items())
+        return next((pair for pair in pairs if "odom" in pair[0].lower()), None)
+
     def moved(self, frame: str, stamp: float) -> Transform | None:
         """`parent_from_frame` between two known ones; None outside them and in a long gap."""
         poses = self._edges[plain(frame)].poses
