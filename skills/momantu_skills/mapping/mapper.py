@@ -250,6 +250,12 @@ class Mapper:
         self._optimised, self._waiting = len(self.poses), 0
         self.revision += 1
 
+    def move(self, change: Pose2D) -> None:
+        """Move the whole map: `new_from_old`."""
+        self.poses = [change @ pose for pose in self.poses]
+        self._origins = [change @ origin for origin in self._origins]
+        self.revision += 1
+
     def finish(self) -> None:
         """Finish all submaps, look for loops between neighbours, and optimise for the last time."""
         while self._open:

@@ -10,6 +10,7 @@ from momantu_bt.geometry import Pose2D
 from momantu_skills.mapping.config import MappingConfig
 from momantu_skills.mapping.logs.log import LoggedScan
 from momantu_skills.mapping.mapper import Graph, Mapper
+from momantu_skills.mapping.settling import settled
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
 from momantu_skills.navigation.matching.tracking import Tracked
@@ -34,12 +35,13 @@ class Known:
 class Survey:
     """Gives a mapper the scans that show something new.
 
-    start: `map_from_base` of the first scan. read: all scans, oldest first; used: those that the
-    mapper got.
+    start: `map_from_base` of the first scan, where it is told; else the map begins at its origin.
+    read: all scans, oldest first; used: those that the mapper got.
     """
 
-    def __init__(self, start: Pose2D = ORIGIN) -> None:
-        self.mapper = Mapper(MappingConfig(), start)
+    def __init__(self, start: Pose2D | None = None) -> None:
+        self.mapper = Mapper(MappingConfig(), start or ORIGIN)
+        self._start = start
         self.read: list[LoggedScan] = []
         self.used: list[LoggedScan] = []
         self._later = 0.0
@@ -91,11 +93,17 @@ class Survey:
         return self.mapper.poses[-1] @ (self.used[-1].odom_from_base.inverse() @ odom_from_base)
 
     def finished(self) -> Survey:
-        """The same survey with its last loops looked for; this one goes on as it is."""
+        """The same survey with its last loops looked for; this one goes on as it is.
+
+        Where the start was told, the map is moved to where its first scan lies there.
+        """
         ended = Survey()
         ended.mapper = copy.deepcopy(self.mapper)
         ended.mapper.finish()
         ended.read, ended.used = self.read[:], self.used[:]
+        if self._start is not None and self.used:
+            matching = ended.mapper.config.matching
+            ended.mapper.move(settled(ended.mapper.poses, self.used, self._start, matching))
         return ended
 
     def placed(self, first: int = 0) -> Iterator[tuple[Pose2D, Rays]]:
