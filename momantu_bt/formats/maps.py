@@ -223,7 +223,7 @@ def _read_yaml(path: Path) -> dict[str, Any]:
 def _number(path: Path, entry: dict[str, Any], key: str) -> float:
     value = _finite(entry.get(key))
     if value is None:
-        raise MapError(f"{path}: {key} is {entry.get(key)!r}, expected a number")
+        raise _wrong(path, entry, key, "a number")
     return value
 
 
@@ -250,9 +250,14 @@ def _origin(path: Path, entry: dict[str, Any]) -> tuple[float, float, float]:
     values = [_finite(value) for value in origin] if isinstance(origin, list) else []
     numbers = [value for value in values if value is not None]
     if not len(values) == len(numbers) == 3:
-        raise MapError(f"{path}: origin is {origin!r}, expected [x, y, yaw] in m and rad")
+        raise _wrong(path, entry, "origin", "[x, y, yaw] in m and rad")
     x, y, yaw = numbers
     return x, y, yaw
+
+
+def _wrong(path: Path, entry: dict[str, Any], key: str, expected: str) -> MapError:
+    said = f"{path}: {key} is {entry[key]!r}" if key in entry else f"{path} has no {key}"
+    return MapError(f"{said}, expected {expected}")
 
 
 def _finite(value: object) -> float | None:

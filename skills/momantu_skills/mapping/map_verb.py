@@ -140,7 +140,7 @@ def _of_log(
         typer.echo(f"note: {log}: {note}", err=True)
     if len(recorded.scans) < building.FEWEST:
         raise InputError(
-            f"{log} holds {len(recorded.scans)} scans that can be used; a map needs "
+            f"{log} holds {counted(len(recorded.scans), 'scan')} that can be used; a map needs "
             f"{building.FEWEST} at least"
         )
     survey, names = surveys.Survey(), None

@@ -14,6 +14,8 @@ from momantu_skills.calibration.camera.lens import fit
 from momantu_skills.calibration.camera.pictures import read_pictures
 from momantu_skills.calibration.errors import CalibrationError
 from momantu_skills.calibration.models import Model
+from momantu_skills.perception.tags import detector
+from momantu_worlds.scenes.catalogue.tags import tag_cells
 
 from momantu_bt.cli import main
 from momantu_bt.robots.plugins import load_robot
@@ -188,6 +190,16 @@ def test_pictures_of_an_aprilgrid(
     lens = fit(APRILGRID, shown.seen, shown.size, Model.PINHOLE)
     assert lens.error < 0.15
     assert lens.matrix[0, 0] == pytest.approx(MATRIX[0, 0], rel=0.01)
+
+
+def test_a_small_blurred_tag_before_grey_is_found() -> None:
+    """25 pixels with its white rim, white of 190 and black of 50 before grey of 110."""
+    cells = np.kron(tag_cells(5) > 0, np.ones((20, 20)))
+    fine = np.full((800, 800), 110.0)
+    fine[300:500, 300:500] = np.where(cells > 0, 190.0, 50.0)
+    blurred = cv2.GaussianBlur(fine, (0, 0), 8.0)
+    gray = cv2.resize(blurred, (100, 100), interpolation=cv2.INTER_AREA).astype(np.uint8)
+    assert 5 in detector.tags_in(np.asarray(gray))
 
 
 def test_corners_of_tags_are_not_moved_by_blur() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import typer
 
 from momantu_bt.errors import InputError
+from momantu_bt.formats.names import counted
 from momantu_skills.mapping import progress, results
 from momantu_skills.mapping.logs import reading
 from momantu_skills.mapping.three_d import finishing, logged, raster, registration
@@ -39,8 +40,8 @@ def map_clouds(
     if found is None or len(found.survey.mapper.keyframes) < finishing.FEWEST:
         kept = 0 if found is None else len(found.survey.mapper.keyframes)
         raise InputError(
-            f"{log} holds {kept} turns from different places; a map needs {finishing.FEWEST} at "
-            "least: the lidar must have moved"
+            f"{log} holds {counted(kept, 'turn')} from different places; a map needs "
+            f"{finishing.FEWEST} at least: the lidar must have moved"
         )
     for note in (found.stood.note, recorded.left_out.note):
         if note:
