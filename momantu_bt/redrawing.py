@@ -32,6 +32,8 @@ class Raster:
         """Which cells have their middle on a surface, or `margin` m beside it."""
         x, y = self._seen_from(surface.map_from_surface)
         half_x, half_y = (edge / 2 + margin for edge in surface.size)
+        if surface.round:
+            return np.asarray(np.hypot(x, y) <= half_x)
         return np.asarray((np.abs(x) <= half_x) & (np.abs(y) <= half_y))
 
     def moved(self, occupied: Mask, here: Surface, there: Surface) -> tuple[Mask, Mask]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.messages import frozen
 from momantu_bt.redrawing import Raster
@@ -12,13 +14,19 @@ from momantu_skills.navigation.map.maps import GridMap, read_grid
 
 
 def believed_maps(site: Site) -> list[GridMap]:
-    """The floor plan and the map of what overhangs it, as far as the site has them.
+    """The floor plan and the map of what overhangs it; none of both if the site has no plan.
+
+    If the site has a plan alone, as one that a laser made, its surfaces are what overhangs it.
 
     Raises:
         MapError: a file is missing or broken.
     """
-    files = [file for file in (site.map_file, site.overhang_file) if file is not None]
-    return [_believed(read_grid(file), site) for file in files]
+    if site.map_file is None:
+        return []
+    plan = _believed(read_grid(site.map_file), site)
+    if site.overhang_file is None:
+        return [plan, _tops(plan, site)]
+    return [plan, _believed(read_grid(site.overhang_file), site)]
 
 
 def corrections(site: Site) -> int:
@@ -29,6 +37,14 @@ def corrections(site: Site) -> int:
 def raster(grid: GridMap) -> Raster:
     """The cells of a map."""
     return Raster(grid.cells.shape, grid.resolution, grid.origin)
+
+
+def _tops(plan: GridMap, site: Site) -> GridMap:
+    """The tops of a site's surfaces, drawn on the raster of its floor plan."""
+    cells = np.full(plan.cells.shape, FREE, dtype=plan.cells.dtype)
+    for surface in site.surfaces.values():
+        cells[raster(plan).on(surface)] = OCCUPIED
+    return replace(plan, cells=frozen(cells))
 
 
 def _believed(grid: GridMap, site: Site) -> GridMap:

@@ -232,8 +232,8 @@ def of_site(site: Site, config: NavigationConfig) -> Costmap:
     """The costmap of a site, before anything was seen; ValueError if the site has no map."""
     if site.map_file is None:
         raise ValueError(f"site {site.name!r} has no map_file to drive in")
-    grid, *overhang = believed_maps(site)
-    return Costmap(grid, overhang[0] if overhang else None, config, Zones(site.zones))
+    grid, overhang = believed_maps(site)
+    return Costmap(grid, overhang, config, Zones(site.zones))
 
 
 def _square(row: int, column: int, reach: int, rows: int, columns: int) -> tuple[slice, slice]:
