@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.find.arms import find_limbs
 from momantu_skills.robot_setup.find.fingers import NEAR, STEPS, Hand, find_hands
 from momantu_skills.robot_setup.find.grasp import APART, LINEAR, STRONGEST, Grasp, find_grasp
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.rays import opening_between
 
 from momantu_bt.geometry import Transform

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.find.poses import HELD
 from momantu_skills.robot_setup.find.proposal import Proposal, propose
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.skeleton import read_skeleton
 from momantu_skills.robot_setup.write.sensor_writer import sensor_names
 from momantu_skills.robot_setup.write.writer import robot_file

@@ -12,10 +12,11 @@ from momantu_bt.formats.problems import Severity
 from momantu_bt.formats.urdf import read_urdf
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.robot import RobotDescription
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.find.base import Stand
 from momantu_skills.robot_setup.find.reach import LADDER, reached
 from momantu_skills.robot_setup.urdf.arm_ik import LimbSolver
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.rays import opening_between
 
 ALONG = 0.7

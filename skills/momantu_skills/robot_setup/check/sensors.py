@@ -17,8 +17,9 @@ from momantu_bt.robot import (
     LidarSensor,
     RobotDescription,
 )
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.check.body import AT_REST, in_poses
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.rays import blocked, planes_of
 
 COLUMNS, ROWS = 48, 36

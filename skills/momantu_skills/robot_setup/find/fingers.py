@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from momantu_bt.geometry import Array
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.manipulation.model.hulls import placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.skeleton import SetupJoint
 
 FINGER_JOINTS = 5

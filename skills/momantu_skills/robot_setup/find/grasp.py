@@ -11,8 +11,9 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from momantu_bt.geometry import Array, Transform
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.find.fingers import STEPS, Hand
-from momantu_skills.robot_setup.urdf.body import Body, placed
+from momantu_skills.robot_setup.urdf.body import Body
 from momantu_skills.robot_setup.urdf.rays import opening_between
 
 SNAP = 0.2

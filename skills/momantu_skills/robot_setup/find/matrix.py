@@ -14,8 +14,9 @@ from itertools import combinations
 import numpy as np
 
 from momantu_bt.geometry import Array
+from momantu_skills.manipulation.model.hulls import placed
 from momantu_skills.robot_setup.find.fingers import Hand
-from momantu_skills.robot_setup.urdf.body import Body, Contacts, hulls_meet, placed
+from momantu_skills.robot_setup.urdf.body import Body, Contacts, hulls_meet
 
 SAMPLES = 10_000
 """Random postures: a pair that collides in one of a thousand is missed in one of 20,000 set-ups."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import QhullError
 
 from momantu_bt.geometry import Array
-from momantu_skills.manipulation.model.hulls import convex, link_hulls, part_points
+from momantu_skills.manipulation.model.hulls import convex, link_hulls, part_points, placed
 from momantu_skills.manipulation.model.shapes import BodyShapes, LinkShapes
 from momantu_skills.manipulation.model.urdf import UrdfSource, base_urdf
 from momantu_skills.robot_setup.urdf.skeleton import SetupError, Skeleton
@@ -191,11 +191,6 @@ def hulls_meet(one: Array, other: Array) -> bool:
     request, result = coal.CollisionRequest(), coal.CollisionResult()
     still = coal.Transform3s.Identity()
     return bool(coal.collide(convex(one), still, convex(other), still, request, result))
-
-
-def placed(points: Array, pose: Array) -> Array:
-    """Points (n, 3) of a link in the base, its pose (4, 4) given."""
-    return np.asarray(points @ pose[:3, :3].T + pose[:3, 3])
 
 
 def _is_body(frame: pin.Frame) -> bool:

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from momantu_skills.manipulation.model.hulls import part_points
+from momantu_skills.manipulation.model.hulls import part_points, placed
 from momantu_skills.manipulation.model.shapes import LONGEST_HULL
 from momantu_skills.manipulation.model.urdf import CollisionPart
-from momantu_skills.robot_setup.urdf.body import Body, hulls_meet, placed
+from momantu_skills.robot_setup.urdf.body import Body, hulls_meet
 
 CELL = 0.15
 """m; a cell is about this large: narrower than what an arm is folded into."""
