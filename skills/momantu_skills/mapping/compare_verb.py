@@ -96,7 +96,8 @@ class Compared:
         """How B lies on A, in words."""
         at = self._found.a_from_b
         degrees = math.degrees(at.yaw)
-        return f"a_from_b: x {at.x:.3f} m, y {at.y:.3f} m, yaw {at.yaw:.4f} rad ({degrees:.2f} deg)"
+        yaw = f"{at.yaw:z.4f} rad ({degrees:z.2f} deg)"
+        return f"a_from_b: x {at.x:z.3f} m, y {at.y:z.3f} m, yaw {yaw}"
 
     def lines(self) -> list[str]:
         """All that a person is told."""
@@ -109,8 +110,8 @@ class Compared:
             )
         for pose in self._found.rivals:
             lines.append(
-                f"B also fits turned otherwise, nearly as well: x {pose.x:.2f} m, y {pose.y:.2f} "
-                f"m, yaw {pose.yaw:.2f} rad"
+                f"B also fits turned otherwise, nearly as well: x {pose.x:z.2f} m, y {pose.y:z.2f} "
+                f"m, yaw {pose.yaw:z.2f} rad"
             )
         for name, told in zip("AB", self._told, strict=True):
             near, same = (100 * float(np.mean(each)) for each in (told.near, told.same))
@@ -163,7 +164,7 @@ def _read(path: Path) -> Side:
 def _listed(name: str, things: Sequence[Thing]) -> list[str]:
     lines = [
         f"only in {name}: {thing.size[0]:.2f} x {thing.size[1]:.2f} m around "
-        f"({thing.middle[0]:.2f}, {thing.middle[1]:.2f})"
+        f"({thing.middle[0]:z.2f}, {thing.middle[1]:z.2f})"
         for thing in things[:NAMED]
     ]
     if len(things) > NAMED:

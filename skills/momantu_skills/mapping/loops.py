@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,10 @@ _POINTS = 300
 _TURN_STEP = 0.015
 _GATE = 0.15
 """Distance of points to their lines at the end, m."""
+_NEAR = 3
+"""How many numbers apart submaps may be for their loops to bear each other out."""
+_AGREES, _TURN_AGREES = 0.3, 0.05
+"""How much such loops may contradict each other, m and rad."""
 _FREE = np.array([10.0, 10.0])
 """Standard deviations (m, rad) of a place that nothing else tells."""
 
@@ -78,3 +83,17 @@ def distance(first: Submap, at: Pose2D, second: Submap, there: Pose2D) -> float:
     """Distance between the middles of two submaps at their poses of the map, m."""
     a, b = at.apply(first.middle[None])[0], there.apply(second.middle[None])[0]
     return float(math.hypot(a[0] - b[0], a[1] - b[1]))
+
+
+def bears_out(other: Loop, loop: Loop, origins: Sequence[Pose2D]) -> bool:
+    """Whether a loop says the same as another one, of another newer submap near it.
+
+    origins: `map_from_submap`, which are trusted over a few submaps. A submap's own loops do not
+    bear each other out: what looks alike lies on both of two older ones that overlap.
+    """
+    if not 0 < abs(other.newer - loop.newer) <= _NEAR or abs(other.older - loop.older) > _NEAR:
+        return False
+    older_from_other = origins[loop.older].inverse() @ origins[other.older]
+    other_from_newer = origins[other.newer].inverse() @ origins[loop.newer]
+    apart = loop.pose.inverse() @ (older_from_other @ other.pose @ other_from_newer)
+    return math.hypot(apart.x, apart.y) < _AGREES and abs(apart.yaw) < _TURN_AGREES

@@ -135,7 +135,8 @@ def make_map(
 def _of_log(
     log: Path, scan: str | None, out: Path, resolution: float | None, earlier: Earlier | None
 ) -> ExitCode:
-    recorded = reading.read_log(log, scan)
+    with progress.Laid() as laid:
+        recorded = reading.read_log(log, scan, laid)
     for note in recorded.notes:
         typer.echo(f"note: {log}: {note}", err=True)
     if len(recorded.scans) < building.FEWEST:
@@ -188,7 +189,7 @@ def _joined(log: Path, scans: Sequence[LoggedScan], earlier: Earlier) -> Pose2D 
         return None
     at = found.start
     typer.echo(
-        f"the log begins at ({at.x:.2f}, {at.y:.2f}), yaw {at.yaw:.2f} rad, on the map "
+        f"the log begins at ({at.x:z.2f}, {at.y:z.2f}), yaw {at.yaw:z.2f} rad, on the map "
         f"{earlier.folder}"
     )
     if found.ways > 1:
@@ -220,7 +221,7 @@ def _explore(
         typer.echo(f"the exploration ended early: {explored.why}", err=True)
     if explored.begun is not None:
         x, y, yaw = explored.begun.x, explored.begun.y, explored.begun.yaw
-        typer.echo(f"it began at ({x:.2f}, {y:.2f}), yaw {yaw:.2f} rad, on the earlier map")
+        typer.echo(f"it began at ({x:z.2f}, {y:z.2f}), yaw {yaw:z.2f} rad, on the earlier map")
     typer.echo(f"{explored.seconds:.1f} s simulated; {_summary(explored.about, out)}")
     if explored.status == "INTERRUPTED":
         return ExitCode.INTERRUPTED

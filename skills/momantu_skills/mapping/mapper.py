@@ -11,7 +11,7 @@ import numpy as np
 from momantu_bt.geometry import Pose2D
 from momantu_skills.mapping import pose_graph
 from momantu_skills.mapping.config import MappingConfig
-from momantu_skills.mapping.loops import SEEN_FROM, Loop, distance, find_loop
+from momantu_skills.mapping.loops import SEEN_FROM, Loop, bears_out, distance, find_loop
 from momantu_skills.mapping.pose_graph import Match
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
@@ -31,6 +31,9 @@ LAST_ROUNDS = 3
 NEIGHBOUR, ALONE = 1.5, 4.0
 """How far submaps may be off at the end, m: with a loop, and without one."""
 LAST_CANDIDATES = 4
+FEWEST = 200
+"""Fewest points of a submap whose loops count alone; others need one that bears them out. A single
+scan of a bare wall lies well on many walls."""
 PLACED = np.diag([0.05**2, 0.05**2, 0.01**2])
 """Covariance (m, m, rad) of the first scan of a further session, where it was found on the map."""
 
@@ -76,6 +79,8 @@ class Mapper:
         """How often the poses of earlier scans were changed."""
         self._start = start
         self.loops: list[Loop] = []
+        self._doubtful: list[Loop] = []
+        """Loops that do not count yet."""
         self._odometry = ORIGIN
         self._motions: list[Pose2D | None] = []
         self._matches: list[Match] = []
@@ -221,22 +226,36 @@ class Mapper:
         return self._ways[newer] - self._ways[max(closed, default=older)]
 
     def _find_loops(self, newer: int, off: dict[int, float], most: int) -> int:
-        """Compare a submap with the nearest of others that may be `off` by so much, m."""
+        """Compare a submap with the nearest of others that may be `off` by so much, m.
+
+        Returns how many loops count now that did not before.
+        """
         submap, at = self._finished[newer], self._origins[newer]
         near: list[tuple[float, int]] = []
         for older, far in off.items():
             apart = distance(submap, at, self._finished[older], self._origins[older])
             if apart < far + SEEN_FROM:
                 bisect.insort(near, (apart, older))
-        found = 0
         for _, older in near[:most]:
             guess = self._origins[older].inverse() @ at
             self._tried.add((older, newer))
             pose = find_loop(self._finished[older], submap, guess, off[older], self.config)
             if pose is not None:
-                self.loops.append(Loop(older, newer, pose))
-                found += 1
-        return found
+                self._doubtful.append(Loop(older, newer, pose))
+        return self._enter_loops()
+
+    def _enter_loops(self) -> int:
+        """Let those of the doubtful loops count that need no other one or have it; how many."""
+        known = self.loops + self._doubtful
+        good = [
+            loop
+            for loop in self._doubtful
+            if len(self._finished[loop.newer].points) >= FEWEST
+            or any(bears_out(other, loop, self._origins) for other in known)
+        ]
+        self.loops += good
+        self._doubtful = [loop for loop in self._doubtful if loop not in good]
+        return len(good)
 
     def _optimise(self) -> None:
         self.poses, self._origins = pose_graph.optimise(

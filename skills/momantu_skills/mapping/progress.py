@@ -149,8 +149,7 @@ class _Counted:
         self._display.show(self._head(done, said), None, Overlay())
 
     def _head(self, done: int, said: str) -> RenderableType:
-        words = Text(said, style="bold", no_wrap=True)
-        return Group(words, ProgressBar(total=self._count, completed=done, width=BAR))
+        return _bar(done, self._count, said)
 
 
 class Scans(_Counted):
@@ -172,11 +171,42 @@ class Scans(_Counted):
         self._display.show(head, grid, Overlay(poses, poses[-1]))
 
 
+class Laid:
+    """Shows how many scans of a log are laid on those before, where there is no odometry."""
+
+    def __init__(self) -> None:
+        self._next = STEP
+        self._display = _Display()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._display.close()
+
+    def __call__(self, done: int, count: int) -> None:
+        """Show how many of how many are laid."""
+        said = f"{done} of {count} scans are laid on those before"
+        if done == 1:
+            self._display.open()
+        if self._display.live:
+            if self._display.due():
+                self._display.show(_bar(done, count, said), None, Overlay())
+        elif done >= self._next * count:
+            typer.echo(said, err=True)
+            self._next += STEP
+
+
 class Turns(_Counted):
     """Shows how far a log of clouds is mapped; see `_Counted`."""
 
     def __init__(self, turns: int) -> None:
         super().__init__(turns, "turns of the lidar")
+
+
+def _bar(done: int, count: int, said: str) -> RenderableType:
+    words = Text(said, style="bold", no_wrap=True)
+    return Group(words, ProgressBar(total=count, completed=done, width=BAR))
 
 
 def _known(now: float, mapping: Mapping) -> str:

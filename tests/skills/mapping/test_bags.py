@@ -135,7 +135,10 @@ def _unlike() -> list[LoggedScan]:
 def test_without_odometry_the_scans_tell_how_the_base_moved(tmp_path) -> None:
     mount = frame("base_link", "laser", FIRST, MOUNT, "/tf_static")
     way = logged(driven(ROUND[:2], 0.1), 3)
-    found = read_log(ros2(tmp_path / "way", [mount, *(scan(each) for each in way)]))
+    laid = []
+    bag = ros2(tmp_path / "way", [mount, *(scan(each) for each in way)])
+    found = read_log(bag, laid=lambda *told: laid.append(told))
+    assert laid == [(n, len(way)) for n in range(1, len(way) + 1)]
     assert "nothing tells how the base moved, so the scans do" in found.notes[0]
     assert len(found.scans) == len(way)
     assert np.allclose(found.scans[0].rays.origin, [0.2, 0.0])

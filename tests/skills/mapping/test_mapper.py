@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from momantu_skills.mapping import pose_graph
 from momantu_skills.mapping.building import build
-from momantu_skills.mapping.loops import Loop
+from momantu_skills.mapping.loops import Loop, bears_out
 from momantu_skills.mapping.mapper import Mapper
 from momantu_skills.mapping.pose_graph import Match
 from momantu_skills.navigation.matching.config import MatchingConfig
@@ -17,7 +18,7 @@ from momantu_skills.navigation.matching.config import MatchingConfig
 from momantu_bt.errors import InputError
 from momantu_bt.formats.maps import FREE, OCCUPIED
 from momantu_bt.geometry import Pose2D
-from tests.skills.mapping.walls import ROUND, driven, error, logged
+from tests.skills.mapping.walls import ROUND, driven, error, logged, seen
 
 
 def never(done, loops):
@@ -136,3 +137,42 @@ def test_right_loops_pull_a_bent_way_straight():
     loops = [Loop(k, 39 - j, true[k].inverse() @ true[39 - j]) for k in (0, 1) for j in (0, 1)]
     found, _ = pose_graph.optimise(bent, bent, motions, matches, loops, config)
     assert error(found, true) < 0.3 * error(bent, true)
+
+
+def test_loops_of_two_submaps_bear_each_other_out_if_they_agree():
+    origins = [Pose2D(2.0 * k, 0.0, 0.1 * k) for k in range(9)]
+
+    def loop(older, newer, off=0.0, turn=0.0):
+        return Loop(
+            older, newer, origins[older].inverse() @ origins[newer] @ Pose2D(off, 0.0, turn)
+        )
+
+    one = loop(1, 6)
+    assert bears_out(loop(2, 7), one, origins)
+    assert bears_out(loop(1, 7, 0.2, 0.03), one, origins)
+    assert not bears_out(loop(2, 7, 2.0), one, origins)
+    assert not bears_out(loop(2, 7, 0.0, 0.3), one, origins)
+    assert not bears_out(loop(2, 6), one, origins), "of the same submap"
+    assert not bears_out(loop(5, 8), one, origins), "of another place"
+    assert not bears_out(one, one, origins)
+
+
+def test_loops_that_correct_drift_alike_bear_each_other_out():
+    origins = [Pose2D(2.0 * k, 0.0) for k in range(9)]
+    drift = Pose2D(0.0, 3.0, 0.2)
+    one, other = (Loop(k, k + 5, origins[k].inverse() @ drift @ origins[k + 5]) for k in (1, 2))
+    assert bears_out(other, one, origins)
+
+
+@pytest.mark.parametrize("odd", [40, 60])
+def test_a_scan_that_matches_nothing_stays_where_odometry_has_it(way, odd):
+    """It shows a bare wall, like many that there are: one 7 m away was taken for it."""
+    scans = logged(way, 3)
+    bare = seen([(1.5, -2.0, 1.5, 2.0)], Pose2D(0.0, 0.0), np.random.default_rng(0))
+    scans[odd] = replace(scans[odd], rays=bare)
+    mapper = Mapper()
+    for scan in scans:
+        mapper.add(scan.odom_from_base, scan.rays)
+    mapper.finish()
+    assert mapper.loops
+    assert error(mapper.poses, way) < 0.05

@@ -72,6 +72,30 @@ def test_before_the_first_scan_there_is_no_map_to_show(terminal):
     assert "0.0 square metres known" in terminal.getvalue()
 
 
+def test_scans_that_are_laid_show_a_bar(terminal):
+    with progress.Laid() as laid:
+        for done in range(1, 8):
+            laid(done, 7)
+    said = terminal.getvalue()
+    assert "7 of 7 scans are laid on those before" in said
+    assert "━" in said
+
+
+def test_where_no_scans_are_laid_nothing_is_shown(terminal, capsys):
+    with progress.Laid():
+        pass
+    assert terminal.getvalue() == "" == capsys.readouterr().err
+
+
+def test_without_a_terminal_lines_tell_how_many_scans_are_laid(capsys):
+    with progress.Laid() as laid:
+        for done in range(1, 201):
+            laid(done, 200)
+    lines = capsys.readouterr().err.splitlines()
+    assert 19 <= len(lines) <= 20
+    assert lines[0] == "10 of 200 scans are laid on those before"
+
+
 def test_without_a_terminal_lines_are_printed(capsys):
     scans, survey = logged(driven(ROUND[:3], 0.5), 1), Survey()
     with progress.Scans(len(scans), survey, "the log alone: ") as told:

@@ -7,6 +7,7 @@ import os
 
 import numpy as np
 import pytest
+from momantu_skills.mapping.comparing import align
 from momantu_skills.mapping.pictures.raster import known_part, resampled
 from momantu_skills.mapping.pictures.terminal import Overlay, map_text
 from momantu_skills.navigation.map.maps import GridMap
@@ -99,6 +100,13 @@ def test_two_maps_are_compared(folder, plan, tmp_path, capsys):
     with Image.open(out) as image:
         colors = {color for _, color in image.convert("RGB").getcolors(1_000_000)}
     assert {(0, 0, 0), (255, 255, 255)} <= colors
+
+
+def test_a_number_that_rounds_to_zero_has_no_sign(folder, monkeypatch, capsys):
+    hardly = align.Aligned(Pose2D(-1e-6, -1e-6, -1e-6), 1.0, 1.0, ())
+    monkeypatch.setattr(align, "align", lambda *_: hardly)
+    assert main(["map", "compare", str(folder), str(folder)]) == 0
+    assert "x 0.000 m, y 0.000 m, yaw 0.0000 rad (0.00 deg)" in capsys.readouterr().out
 
 
 def test_maps_of_different_places_are_told(folder, tmp_path, capsys):

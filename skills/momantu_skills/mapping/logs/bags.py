@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,13 @@ from momantu_skills.mapping.logs.placed import Published, placed
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 
 
-def read_bag(path: Path, topic: str | None = None) -> Log:
+def read_bag(
+    path: Path, topic: str | None = None, laid: Callable[[int, int], None] | None = None
+) -> Log:
     """The scans of a bag: a `.bag`, the folder of a ROS 2 bag, or one `.mcap` or `.db3` of it.
 
-    topic: of the laser, if the bag has several; its name without a slash will do.
+    topic: of the laser, if the bag has several; its name without a slash will do. laid: see
+    `placed`.
 
     Raises:
         LogError: the package `rosbags` is missing, the bag cannot be read, or it holds no scans
@@ -36,7 +40,7 @@ def read_bag(path: Path, topic: str | None = None) -> Log:
                 ros.enter(message, connection.msgtype, told)
     if not told.scans:
         raise LogError(f"{path}: the topic {scans.topic} holds no scan")
-    return placed(path, told)
+    return placed(path, told, laid)
 
 
 def _scan_topic(path: Path, reader: Any, topic: str | None) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from momantu_bt.geometry import Pose2D
@@ -31,15 +31,18 @@ class Reckoned:
     matched: int
 
 
-def reckoned(scans: Sequence[tuple[float, Rays]]) -> Reckoned:
+def reckoned(
+    scans: Sequence[tuple[float, Rays]], laid: Callable[[int, int], None] | None = None
+) -> Reckoned:
     """How the base moved, by laying each scan on those of the last metres.
 
-    scans: stamps, s, and beams in base, oldest first; one at least.
+    scans: stamps, s, and beams in base, oldest first; one at least. laid: told after each how many
+    of how many are laid.
     """
     trail: Trail | None = None
     at, kept, step, before, matched = ORIGIN, ORIGIN, ORIGIN, 0.0, 1
     poses = []
-    for stamp, rays in scans:
+    for number, (stamp, rays) in enumerate(scans, 1):
         scan = ScanPoints.from_rays(rays, GUESSED.longest)
         if trail is None:
             trail = Trail(scan, GUESSED)
@@ -56,4 +59,6 @@ def reckoned(scans: Sequence[tuple[float, Rays]]) -> Reckoned:
                 kept = at
         poses.append(at)
         before = stamp
+        if laid is not None:
+            laid(number, len(scans))
     return Reckoned(tuple(poses), matched)

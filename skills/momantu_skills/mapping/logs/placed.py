@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -61,8 +61,10 @@ def pose_of(position: Sequence[float], quaternion: Sequence[float]) -> Transform
     return Transform(position, quaternion)
 
 
-def placed(path: Path, told: Published) -> Log:
+def placed(path: Path, told: Published, laid: Callable[[int, int], None] | None = None) -> Log:
     """The scans with odometry, oldest first. Where none is told, the scans tell how the base moved.
+
+    laid: told then how many of how many scans are laid on those before.
 
     Raises:
         LogError: nothing tells how the base moved, the laser is not level, or the clock runs back.
@@ -86,7 +88,7 @@ def placed(path: Path, told: Published) -> Log:
         mount = _mount(path, told.transforms, base, frame, scan.stamp)
         seen.append((scan.stamp, Rays.from_scan(limited, mount)))
     if found_base is None:
-        return _by_scans(path, frame, told, seen, notes)
+        return _by_scans(path, frame, told, seen, notes, laid)
     return _by_odometry(path, found_base, told, seen, notes)
 
 
@@ -118,9 +120,10 @@ def _by_scans(
     told: Published,
     seen: Sequence[tuple[float, Rays]],
     notes: Sequence[str],
+    laid: Callable[[int, int], None] | None,
 ) -> Log:
     """seen: stamps, s, and beams in base."""
-    ways = by_scans.reckoned(seen)
+    ways = by_scans.reckoned(seen, laid)
     if ways.matched < FEWEST_MATCHED * len(seen):
         raise _motionless(path, frame, told, len(seen) - ways.matched, len(seen))
     said = (

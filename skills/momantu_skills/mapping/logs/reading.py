@@ -14,6 +14,8 @@ with lazily():
     from momantu_skills.mapping.logs.clouds import reading as clouds
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from momantu_skills.mapping.logs.clouds.log import CloudLog
 
 RECORD = "run.mcap"
@@ -24,20 +26,23 @@ _POINTER = b"version https://git-lfs"
 """What Git LFS leaves in the place of a large file that was not fetched."""
 
 
-def read_log(path: Path, topic: str | None = None) -> Log:
+def read_log(
+    path: Path, topic: str | None = None, laid: Callable[[int, int], None] | None = None
+) -> Log:
     """The scans of a log.
 
-    topic: of the laser, in a bag or a record that has several.
+    topic: of the laser, in a bag or a record that has several. laid: told how many of how many
+    scans are laid on those before, where nothing else tells how the base moved.
 
     Raises:
         LogError: there is no such log, it cannot be read, or it holds no scans with odometry.
     """
     if _is_bag(path):
-        return bags.read_bag(path, topic)
+        return bags.read_bag(path, topic, laid)
     if path.is_dir():
-        return records.read_record(path / RECORD, topic)
+        return records.read_record(path / RECORD, topic, laid)
     if _head(path).startswith(_MCAP):
-        return records.read_record(path, topic)
+        return records.read_record(path, topic, laid)
     if topic is not None:
         raise LogError(f"{path} has no topics; --scan is for bags and records")
     return carmen.read_carmen(path)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,10 +24,13 @@ from momantu_skills.mapping.logs.placed import Published, placed, pose_of
 SCAN, TF = "foxglove.LaserScan", "foxglove.FrameTransforms"
 
 
-def read_record(path: Path, topic: str | None = None) -> Log:
+def read_record(
+    path: Path, topic: str | None = None, laid: Callable[[int, int], None] | None = None
+) -> Log:
     """The scans of a record, of a cut-off one as far as it goes.
 
-    topic: of the laser, if the record has several; its name without a slash will do.
+    topic: of the laser, if the record has several; its name without a slash will do. laid: see
+    `placed`.
 
     Raises:
         LogError: the file cannot be read, or holds no scans with odometry.
@@ -47,7 +50,7 @@ def read_record(path: Path, topic: str | None = None) -> Log:
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(f"the record {path} is damaged: {error!r}") from None
     told.scans = _limited(scans[_chosen(path, list(scans), topic)])
-    found = placed(path, told)
+    found = placed(path, told, laid)
     return Log(found.scans, (*notes, *found.notes))
 
 
