@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
+import cv2
 import numpy as np
 import pytest
+from momantu_skills.perception.tags import detector
 from momantu_skills.perception.tags.covariances import difference
-from momantu_skills.perception.tags.detector import IDS, find_all
+from momantu_skills.perception.tags.detector import IDS, Detection, find_all
 from momantu_skills.perception.tags.places import place_of
 from momantu_skills.perception.tags.recognise import recognise
+from momantu_worlds.scenes.catalogue.tags import tag_cells
 
 from momantu_bt.geometry import Transform, quaternion_from_rpy
+from momantu_bt.messages import CameraImage
 from momantu_bt.tags import FAMILIES, TagBundle, TagFamily, single_tag
-from tests.skills.scenery.tag_pictures import before, grid, picture, without_depth
+from tests.skills.scenery.tag_pictures import K, before, grid, picture, without_depth
 
 BOARD = grid()
 NEAR = before(0.7, 0.4, 0.8, 0.3)
@@ -83,6 +88,40 @@ def test_all_tags_of_a_picture_have_a_pose_at_once() -> None:
     for each in shown.found:
         assert off(each.pose.camera_from_bundle, places[each.name])[0] < 0.003
     assert [each.name for each in recognise([image], known).found] == ["board", "mark"]
+
+
+def _small_blurred(ids: Sequence[int]) -> CameraImage:
+    """Tags of 25 pixels with their white rims, white of 190 and black of 50 before grey of 110."""
+    fine = np.full((4800, 6400), 110.0)
+    for n, tag_id in enumerate(ids):
+        row, column = 300 + 500 * (n // 8), 300 + 700 * (n % 8)
+        cells = np.kron(tag_cells(tag_id) > 0, np.ones((20, 20)))
+        fine[row : row + 200, column : column + 200] = np.where(cells > 0, 190.0, 50.0)
+    blurred = cv2.GaussianBlur(fine, (0, 0), 8.0)
+    gray = cv2.resize(blurred, (640, 480), interpolation=cv2.INTER_AREA).astype(np.uint8)
+    color = np.ascontiguousarray(np.repeat(gray[..., None], 3, axis=2))
+    return CameraImage(0.0, "camera", color, np.zeros(gray.shape, np.float32), K)
+
+
+@pytest.mark.parametrize("pictures", [1, 3])
+def test_small_blurred_tags_before_grey_are_found(pictures: int) -> None:
+    ids = [2, 3, 4, 9, 19, 20, 30, 33, 34, 35, 36, 46, 47, 54, 58, 61, 63, 64, 66, 71, 72, 75, 76]
+    found = find_all([_small_blurred(ids)] * pictures)
+    assert [each.tag_id for each in found] == ids
+
+
+def test_where_a_tag_is_found_the_picture_is_searched_once(monkeypatch: Any) -> None:
+    looks, detect = [], detector._detect
+
+    def counted(*given: Any) -> list[Detection]:
+        looks.append(given)
+        return detect(*given)
+
+    monkeypatch.setattr(detector, "_detect", counted)
+    assert len(find_all([picture([(BOARD, NEAR)])])) == 6
+    assert len(looks) == 1
+    assert find_all([picture([])]) == []
+    assert len(looks) == 3
 
 
 def test_a_mirrored_tag_is_no_tag() -> None:

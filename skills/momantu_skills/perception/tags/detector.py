@@ -23,7 +23,8 @@ matrices here."""
 LEAST_MARGIN = 15.0
 """Decision margin of the decoded bits below which a tag is ignored."""
 WRONG_BITS = 1
-"""Most bits of a tag that may be wrong in a clear picture; in a lifted or averaged one, none."""
+"""Most bits of a tag that may be wrong in a clear picture; in a lifted or averaged one, or where no
+tag was found at first, none."""
 EXACT = frozenset({"tag16h5", "tagCircle21h7"})
 """Families with so few bits that a wrong one makes tags out of anything: none may be wrong."""
 LARGE = frozenset({"tagCircle49h12", "tagCustom48h12", "tagStandard52h13"})
@@ -63,18 +64,19 @@ def find_all(
     """Every tag in pictures from one place; an id that shows twice is there twice, larger first.
 
     Several pictures are averaged. Dim ones are searched in lifted light too, as the library counts
-    light in whole levels of 255.
+    light in whole levels of 255. Where no tag is found, the picture is searched as it is, with its
+    gamma: small tags before grey show there, see `tags_in`.
     """
     grays = [np.ascontiguousarray(image.color[..., 1]) for image in images]
     mean = light_of(grays)
     alone = len(grays) == 1
     found = _detect(levels(mean), families, WRONG_BITS if alone else 0)
     lift = lift_of(mean)
-    if lift is None:
-        return found
-    plain = {each.key for each in found}
-    lifted = _detect(levels(mean, lift), families, 0)
-    return _ordered([*found, *(each for each in lifted if each.key not in plain)])
+    if lift is not None:
+        plain = {each.key for each in found}
+        lifted = _detect(levels(mean, lift), families, 0)
+        found = _ordered([*found, *(each for each in lifted if each.key not in plain)])
+    return found or _detect(np.mean(grays, axis=0).astype(np.uint8), families, 0)
 
 
 def find_tags(images: Sequence[CameraImage], family: TagFamily = USUAL_FAMILY) -> dict[int, Array]:
