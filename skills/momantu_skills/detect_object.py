@@ -42,7 +42,8 @@ class DetectObject(Skill):
     """Look over a surface, measure the objects on it, and find the requested object.
 
     The camera looks at the surface from its middle outwards until it sees the object, then at the
-    object. The skill measures the surface too: a table may stand up to 0.1 m and 5 degrees away
+    object. A match of which the detector is not sure counts only if no look shows a better one.
+    The skill measures the surface too: a table may stand up to 0.1 m and 5 degrees away
     from where the site places it, and 3 cm higher or lower.
     """
 
@@ -96,7 +97,7 @@ class DetectObject(Skill):
             work = partial(self._measure, finder, snapshots, region)
             result = yield from compute(work, budget=finder.budget)
             best = None if result is None else _asked_of(result, finder.accepted)
-            if best is None:
+            if best is None or best.score < _sure(finder):
                 continue
             if len(snapshots) >= self.views:
                 break
@@ -129,13 +130,13 @@ class DetectObject(Skill):
         for snapshot in snapshots[len(self._views) :]:
             self._views.append(pictures.see(snapshot, region, self.planning_scene))
         found = self._seen_in(finder, self._views, region)
-        if found is None or _asked_of(found, finder.accepted) or all(map(_upright, found)):
+        if found is None or _asked_of(found, _sure(finder)) or all(map(_upright, found)):
             return found
         # what says how things lie looks at each picture by itself: what it puts together of
         # several may be a part of a thing, beside which another picture shows the whole
         for view in reversed(self._views):
             alone = self._seen_in(finder, [view], region)
-            if alone and _asked_of(alone, finder.accepted):
+            if alone and _asked_of(alone, _sure(finder)):
                 return alone
         return found
 
@@ -193,6 +194,11 @@ def _measured(thing: DetectedObject) -> str:
 def _asked_of(things: Sequence[DetectedObject], accepted: float) -> DetectedObject | None:
     """Return the object with the best score, if that score is high enough."""
     return next((thing for thing in things if thing.score >= accepted), None)
+
+
+def _sure(finder: ObjectDetector) -> float:
+    """The score from which on a detector's match is worth no further look."""
+    return float(getattr(finder, "sure", finder.accepted))
 
 
 def _upright(thing: DetectedObject) -> bool:

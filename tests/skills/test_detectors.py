@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -18,9 +18,9 @@ from momantu_skills.perception.objects.geometric import GeometricDetector
 
 from momantu_bt import plugins
 from momantu_bt.descriptions.tunables import configured
-from momantu_bt.detector import DETECTORS
-from momantu_bt.geometry import Pose2D
-from momantu_bt.messages import ObjectClass
+from momantu_bt.detector import DETECTORS, View
+from momantu_bt.geometry import Pose, Pose2D, Transform
+from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.plugins import PluginError
 from momantu_bt.testing import ScriptedRobot, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Round
@@ -133,6 +133,47 @@ def test_the_site_chooses_where_the_tree_does_not(
         assert result.status == "SUCCESS", result.explain()
     else:
         assert result.failure.code == "OBJECT_NOT_FOUND"
+
+
+class Guessing:
+    """Is sure of what it sees from its third view on, if it ever is."""
+
+    accepted, sure, budget = 0.5, 0.9, 0.05
+    ever = True
+
+    def detect(
+        self, views: Sequence[View], low: float, high: float, asked: ObjectClass
+    ) -> tuple[DetectedObject, ...]:
+        certain = self.ever and len(views) >= 3
+        pose = Pose(Transform((1.0, 0.2 if certain else -0.3, TOP + 0.05)), "odom", 0.0)
+        score = 1.0 if certain else 0.6
+        return (DetectedObject("mug", pose, (0.07, 0.07, 0.1), "cylinder", score, TOP),)
+
+
+class Guess(Guessing):
+    """Is never sure."""
+
+    ever = False
+
+
+@pytest.mark.parametrize(("named", "y"), [("Guessing", 0.2), ("Guess", -0.3)])
+def test_a_match_that_is_not_sure_counts_if_no_look_shows_a_better_one(
+    named: str,
+    y: float,
+    monkeypatch: pytest.MonkeyPatch,
+    onlooker: Callable[..., ScriptedRobot],
+    seen_scene: Callable[[], object],
+) -> None:
+    install(monkeypatch, f"{__name__}:{named}")
+    result = run_skill(
+        DetectObject,
+        robot=onlooker(THINGS),
+        site=SITE,
+        services={"planning_scene": seen_scene(), "localization": object()},
+        inputs={"object": ObjectClass("mug"), "on": "table", "detector": "highest"},
+    )
+    assert result.status == "SUCCESS", result.explain()
+    assert result.outputs["found"].pose.position[1] == pytest.approx(y)
 
 
 def test_a_site_that_names_no_detector_is_told() -> None:

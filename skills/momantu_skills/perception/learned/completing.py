@@ -29,6 +29,9 @@ ENDS = 2.0
 """Per cent of the points that noise puts beyond each end."""
 AGREES = 0.015
 """Difference of what is seen of a side from its asked length up to which it is seen whole, m."""
+WIDTH = 0.15
+"""Share of the asked diameter by which that of a round thing may differ: as for what is not hidden.
+"""
 NEAR = 0.008
 """Distance from the body's surface up to which a point is on it, m."""
 DEEP = 0.012
@@ -115,16 +118,15 @@ def _turned(thing: Solid, body: Body) -> Iterator[tuple[Body, Transform]]:
 def _may_be(body: Body, extent: Array, thing: Solid) -> bool:
     """Whether points of some extent (3,) may show the body: at most one of its sides is hidden.
 
-    The side of a round thing tells its diameter, also where a half of it is hidden.
+    That is no round thing's diameter: its side tells it, also where a half of it is hidden.
     """
     sizes = 2 * body.half
-    if (extent > sizes + AGREES).any():
+    if (extent > sizes + NEAR).any():
         return False
-    shown = extent.copy()
     if body.round:
-        shown[:2] = thing.size[0] if thing.has_axis else extent[:2].max()
-    differs = np.abs(shown - sizes) > AGREES
-    return int(differs[1:].sum() if body.round else differs.sum()) <= 1
+        wide = thing.size[0] if thing.has_axis else float(extent[:2].max())
+        return abs(wide - float(sizes[0])) <= WIDTH * float(sizes[0])
+    return int((sizes - extent > AGREES).sum()) <= 1
 
 
 def _middles(low: float, high: float, half: float) -> list[float]:

@@ -36,6 +36,8 @@ TOLERANCES = MatchConfig(relative=0.15, absolute=0.010)
 """Its sizes are less exact than those of a fitted shape."""
 UNLIKELY = 0.6
 """Factor on the score of a thing that is hardly right by itself; of a likely one it is 1."""
+GUESSED = 0.05
+"""Scores of things that are completed are within this above the least score that is accepted."""
 SPEAKING = 2
 """Least number of asked sizes by which a thing of a less likely category may be the asked one."""
 
@@ -79,6 +81,11 @@ class LearnedDetector:
         """The least score of an object that counts as the requested one."""
         return TOLERANCES.accepted
 
+    @property
+    def sure(self) -> float:
+        """The score from which on it is worth no further look; what is hidden in part has less."""
+        return TOLERANCES.accepted + GUESSED
+
     def detect(
         self, views: Sequence[View], low: float, high: float, asked: ObjectClass
     ) -> tuple[DetectedObject, ...] | None:
@@ -114,8 +121,10 @@ class LearnedDetector:
         if whole is None:
             return None
         made = self._object(whole[0], level, found.pose.stamp, asked)
-        made = replace(made, score=made.score * whole[1] * _alike(thing, asked))
-        return made if made.score >= self.accepted else None
+        worth = made.score * whole[1] * _alike(thing, asked)
+        if worth < self.accepted:
+            return None
+        return replace(made, score=self.accepted + (self.sure - self.accepted) * worth)
 
     def _check(self, category: str) -> None:
         """Raise an error if the weights cannot be used, or do not know a category."""
