@@ -36,7 +36,7 @@ TOLERANCES = MatchConfig(relative=0.15, absolute=0.010)
 """Its sizes are less exact than those of a fitted shape."""
 UNLIKELY = 0.6
 """Factor on the score of a thing that is hardly right by itself; of a likely one it is 1."""
-GUESSED = 0.05
+GUESSED = 0.005
 """Scores of things that are completed are within this above the least score that is accepted."""
 SPEAKING = 2
 """Least number of asked sizes by which a thing of a less likely category may be the asked one."""
