@@ -104,10 +104,7 @@ def _turned(thing: Solid, body: Body) -> Iterator[tuple[Body, Transform]]:
     """The body as it may be turned: its sides in the order of the turn's axes, and the turn."""
     turn = Transform((0.0, 0.0, 0.0), thing.frame_from_object.quaternion)
     if body.round:
-        turn = turn if thing.has_axis else Transform((0.0, 0.0, 0.0))
-        steep = abs(float(turn.rotation[2, 2]))
-        if body.slender or steep > UPRIGHT or steep < LEVEL:  # nothing else rests on a slant
-            yield body, turn
+        yield body, turn if thing.has_axis else Transform((0.0, 0.0, 0.0))
         return
     if thing.has_axis or abs(float(turn.rotation[2, 2])) < UPRIGHT:
         yaw = smallest_rectangle(thing.points[:, :2]).yaw
