@@ -42,7 +42,8 @@ class ObjectDetector(Protocol):
 
     Its class is an entry point of `momantu_bt.detectors`, and is made without arguments once per
     search. It may have an attribute `categories`, the categories that it tells apart; the checker
-    then warns of others.
+    then warns of others. It may have an attribute `sure`, a score of at least `accepted`: a match
+    with a lower one does not end the search, and counts if no look shows a better one.
     """
 
     @property

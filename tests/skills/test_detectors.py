@@ -22,11 +22,11 @@ from momantu_bt.detector import DETECTORS, View
 from momantu_bt.geometry import Pose, Pose2D, Transform
 from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.plugins import PluginError
-from momantu_bt.testing import ScriptedRobot, run_skill, scripted_site
+from momantu_bt.testing import ScriptedRobot, SkillResult, run_skill, scripted_site
 from momantu_bt.testing.painting import Block, Round
 from momantu_bt.tree.load import load
 from momantu_bt.tree.problems import TreeError
-from momantu_bt.world import Surface
+from momantu_bt.world import Site, Surface
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "detectors.md"
 TOP = 0.72
@@ -65,17 +65,27 @@ def install(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
     monkeypatch.setattr(plugins, "entry_points", found)
 
 
-@pytest.mark.usefixtures("highest")
-def test_the_pages_detector_finds_what_it_is_named_for(
+@pytest.fixture
+def look(
     onlooker: Callable[..., ScriptedRobot], seen_scene: Callable[[], object]
-) -> None:
-    result = run_skill(
-        DetectObject,
-        robot=onlooker(THINGS),
-        site=SITE,
-        services={"planning_scene": seen_scene(), "localization": object()},
-        inputs={"object": ObjectClass("mug"), "on": "table", "detector": "highest"},
-    )
+) -> Callable[..., SkillResult]:
+    """Looks for a mug on the table."""
+
+    def looked(detector: str | None = "highest", site: Site = SITE) -> SkillResult:
+        return run_skill(
+            DetectObject,
+            robot=onlooker(THINGS),
+            site=site,
+            services={"planning_scene": seen_scene(), "localization": object()},
+            inputs={"object": ObjectClass("mug"), "on": "table", "detector": detector},
+        )
+
+    return looked
+
+
+@pytest.mark.usefixtures("highest")
+def test_the_pages_detector_finds_what_it_is_named_for(look: Callable[..., SkillResult]) -> None:
+    result = look()
     assert result.status == "SUCCESS", result.explain()
     found = result.outputs["found"]
     assert found.category == "mug"
@@ -116,19 +126,10 @@ def test_the_usual_detector_is_the_geometric_one() -> None:
 @pytest.mark.usefixtures("highest")
 @pytest.mark.parametrize("named", [None, "geometric"])
 def test_the_site_chooses_where_the_tree_does_not(
-    named: str | None,
-    onlooker: Callable[..., ScriptedRobot],
-    seen_scene: Callable[[], object],
+    named: str | None, look: Callable[..., SkillResult]
 ) -> None:
     site = replace(SITE, services={"detect_object": {"detector": "highest"}})
-    inputs = {"object": ObjectClass("mug"), "on": "table", "detector": named}
-    result = run_skill(
-        DetectObject,
-        robot=onlooker(THINGS),
-        site=site,
-        services={"planning_scene": seen_scene(), "localization": object()},
-        inputs=inputs,
-    )
+    result = look(named, site)
     if named is None:  # it takes whatever stands highest for a mug
         assert result.status == "SUCCESS", result.explain()
     else:
@@ -158,20 +159,10 @@ class Guess(Guessing):
 
 @pytest.mark.parametrize(("named", "y"), [("Guessing", 0.2), ("Guess", -0.3)])
 def test_a_match_that_is_not_sure_counts_if_no_look_shows_a_better_one(
-    named: str,
-    y: float,
-    monkeypatch: pytest.MonkeyPatch,
-    onlooker: Callable[..., ScriptedRobot],
-    seen_scene: Callable[[], object],
+    named: str, y: float, monkeypatch: pytest.MonkeyPatch, look: Callable[..., SkillResult]
 ) -> None:
     install(monkeypatch, f"{__name__}:{named}")
-    result = run_skill(
-        DetectObject,
-        robot=onlooker(THINGS),
-        site=SITE,
-        services={"planning_scene": seen_scene(), "localization": object()},
-        inputs={"object": ObjectClass("mug"), "on": "table", "detector": "highest"},
-    )
+    result = look()
     assert result.status == "SUCCESS", result.explain()
     assert result.outputs["found"].pose.position[1] == pytest.approx(y)
 

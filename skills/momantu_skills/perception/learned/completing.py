@@ -19,6 +19,7 @@ from momantu_bt.messages import ObjectClass
 from momantu_skills.perception.geometry.rectangles import smallest_rectangle
 from momantu_skills.perception.learned.bodies import Body, asked_body
 from momantu_skills.perception.learned.fusing import Look
+from momantu_skills.perception.learned.refining import LEVEL, UPRIGHT
 from momantu_skills.perception.learned.solids import Solid
 
 LIKELY = 0.2
@@ -45,11 +46,7 @@ SIDE = 0.55
 SOUND = 0.96
 """Least share, of what is seen on, in and through the body, that is on it."""
 WORTH = 0.85
-"""Score of a body that explains everything: less than that of a thing that was seen whole."""
-UPRIGHT = 0.999
-"""Cosine of the tilt up to which an axis is upright."""
-LEVEL = 0.001
-"""Share of an axis along the vertical up to which it is level."""
+"""How well a body that agrees with all that is seen explains it: the rest may be otherwise."""
 
 
 def completed(

@@ -55,9 +55,13 @@ class Crop:
     rows: NDArray[np.int64]
     columns: NDArray[np.int64]
 
+    def cells(self) -> Array:
+        """The points (n, 3) of its cells of 2x2 pixels, in `level`, m; NaN without depth."""
+        return self.points[::2, ::2].reshape(-1, 3).astype(np.float64)
+
     def shown(self) -> Array:
-        """The points (n, 3) of its cells of 2x2 pixels that have depth, in `level`, m."""
-        points = self.points[::2, ::2].reshape(-1, 3).astype(np.float64)
+        """Those of its cells' points that have depth, (n, 3)."""
+        points = self.cells()
         return points[np.isfinite(points[:, 2])]
 
 

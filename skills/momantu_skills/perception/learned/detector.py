@@ -37,7 +37,8 @@ TOLERANCES = MatchConfig(relative=0.15, absolute=0.010)
 UNLIKELY = 0.6
 """Factor on the score of a thing that is hardly right by itself; of a likely one it is 1."""
 GUESSED = 0.005
-"""Scores of things that are completed are within this above the least score that is accepted."""
+"""Range, above the least accepted score, in which those of completed things lie: other things that
+are accepted have higher ones, but for a few."""
 SPEAKING = 2
 """Least number of asked sizes by which a thing of a less likely category may be the asked one."""
 

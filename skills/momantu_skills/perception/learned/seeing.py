@@ -44,7 +44,7 @@ class Seeing:
         layers = channels(crop)
         normals = layers[NORMAL, ::2, ::2].reshape(3, -1).T.astype(np.float64)
         chances, coordinates, offsets = self._said(layers)
-        points = crop.points[::2, ::2].reshape(-1, 3).astype(np.float64)
+        points = crop.cells()
         shown = (chances[:, NOTHING] < 1.0 - SHOWN) & np.isfinite(points[:, 2])
         if int(shown.sum()) < LEAST:
             return []

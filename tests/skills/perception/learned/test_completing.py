@@ -6,18 +6,22 @@ The scenes are points of surfaces of which each ray of the camera sees the neare
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple, cast
 
 import numpy as np
 import pytest
 from momantu_skills.perception.learned.bodies import Body, asked_body
 from momantu_skills.perception.learned.completing import completed
+from momantu_skills.perception.learned.detector import LearnedDetector
 from momantu_skills.perception.learned.fusing import Look
 from momantu_skills.perception.learned.solids import Solid
 
 from momantu_bt.categories import USUAL, Symmetry
+from momantu_bt.detector import View
 from momantu_bt.geometry import Array, Transform
-from momantu_bt.messages import ObjectClass
+from momantu_bt.messages import DetectedObject, ObjectClass
 from momantu_bt.world import seeded
 
 EYE = np.array([0.0, -0.7, 0.6])
@@ -43,7 +47,7 @@ class Thing(NamedTuple):
     def surface(self) -> Array:
         """Points (n, 3) on its sides and its top."""
         draw = seeded("thing", *self.size, *self.at)
-        half, count = np.array(self.size) / 2, 40_000
+        half, count = np.array(self.size) / 2, 250_000
         own = draw.uniform(-1.0, 1.0, (count, 3)) * half
         top = draw.uniform(size=count) < 0.4
         if self.round:
@@ -77,10 +81,8 @@ def seen(*things: Thing) -> list[Array]:
     return [points[of == number] for number in range(len(groups))]
 
 
-def found(
-    asked: ObjectClass, *things: Thing, chance: float = 0.9, told: str = ""
-) -> tuple[Solid, float] | None:
-    """The first thing completed to what is asked for; the network tells what is seen of it."""
+def shown_as(category: str, chances: Mapping[str, float], *things: Thing) -> tuple[Solid, Look]:
+    """The first thing as a network that tells what is seen of it has it, and the picture."""
     shown = seen(*things)
     own = shown[1]
     extent = (own - things[0].pose.position) @ things[0].pose.rotation
@@ -89,7 +91,6 @@ def found(
     if things[0].round:
         size = things[0].size
     middle = things[0].pose.apply((low + high) / 2)
-    category = told or asked.category
     solid = Solid(
         category,
         Transform(middle, things[0].pose.quaternion),
@@ -97,10 +98,19 @@ def found(
         len(own),
         0.9,
         handle=False,
-        chances={category: 1.0 - chance, asked.category: chance},
+        chances=chances,
         points=own,
     )
-    look = Look(0.0, 0.6, 0.0, (solid,), EYE, np.concatenate(shown))
+    return solid, Look(0.0, 0.6, 0.0, (solid,), EYE, np.concatenate(shown))
+
+
+def found(
+    asked: ObjectClass, *things: Thing, chance: float = 0.9, told: str = ""
+) -> tuple[Solid, float] | None:
+    """The first thing completed to what is asked for."""
+    category = told or asked.category
+    chances = {category: 1.0 - chance, asked.category: chance}
+    solid, look = shown_as(category, chances, *things)
     return completed(solid, asked, USUAL[asked.category], [look], 0.0)
 
 
@@ -187,3 +197,42 @@ def test_points_behind_a_body_are_those_whose_ray_goes_through_it(is_round: bool
     crossed = (inside.reshape(2000, -1) < 0.0).any(axis=0)
     ends = body._replace(half=body.half - 0.008).distances(points) < 0.0
     assert ((body.behind(eye, points) > 0.0) == (crossed & ~ends)).mean() > 0.98
+
+
+def detected(
+    asked: ObjectClass, look: Look, monkeypatch: pytest.MonkeyPatch
+) -> tuple[LearnedDetector, list[DetectedObject]]:
+    """What the detector says of a picture in which its network sees the look's things."""
+    detector = LearnedDetector()
+    monkeypatch.setattr(detector, "_look", lambda *_: look)
+    return detector, list(detector.detect([cast(View, None)], 0.0, 1.0, asked) or ())
+
+
+def test_the_detector_is_not_sure_of_a_completed_thing(monkeypatch: pytest.MonkeyPatch) -> None:
+    box = Thing((0.20, 0.06, 0.08), (0.02, 0.1))
+    _, look = shown_as("box", {"box": 0.9}, box, Thing((0.12, 0.05, 0.22), (0.09, -0.02)))
+    detector, (only,) = detected(LONG, look, monkeypatch)
+    assert detector.accepted <= only.score < detector.sure
+    assert sorted(only.size) == pytest.approx([0.06, 0.08, 0.20])
+    whole = replace(look.solids[0], size=(0.20, 0.06, 0.08))
+    both = replace(look, solids=(replace(whole, frame_from_object=Transform((0.3, 0.3, 0.04))),))
+    detector, things = detected(
+        LONG, replace(both, solids=(*both.solids, *look.solids)), monkeypatch
+    )
+    assert [thing.score >= detector.sure for thing in things] == [True, False]
+    assert things[1].score < detector.accepted
+
+
+@pytest.mark.parametrize("sizes", [{"diameter": 0.08, "height": 0.1}, {}])
+def test_a_likely_category_counts_more_if_sizes_speak_for_it(
+    sizes: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scores = []
+    for likely in (0.4, 0.05):
+        can = Thing((0.08, 0.08, 0.1), (0.0, 0.1), round=True)
+        solid, look = shown_as("can", {"can": 0.5, "mug": likely}, can)
+        solid = replace(solid, size=can.size, sure=0.5, frame_from_object=can.pose)
+        mug = ObjectClass("mug", **sizes)
+        _, (only,) = detected(mug, replace(look, solids=(solid,)), monkeypatch)
+        scores.append(only.score)
+    assert (scores[0] > 1.2 * scores[1]) == bool(sizes)
