@@ -53,7 +53,7 @@ class Problem:
 def problem(
     seed: int, noise: str, wrong: str = "", share: float = 0.24, count: int = 17
 ) -> Problem:
-    """A random robot, mounting and board; a quarter of its views is wrong."""
+    """A random robot, mounting and board; a share of its views is wrong."""
     rng = np.random.default_rng(seed)
     eye = Transform(rng.uniform(-0.15, 0.15, 3), rng.normal(size=4))
     target = Transform(rng.uniform(-1.0, 1.0, 3), rng.normal(size=4))
@@ -68,7 +68,7 @@ def problem(
         seen = ours @ seen
     if noise in (HAND, BOTH):
         hand = hand @ theirs
-    chosen = np.sort(rng.permutation(count)[: round(0.24 * count) if wrong else 0])
+    chosen = np.sort(rng.permutation(count)[: round(share * count) if wrong else 0])
     bad = _spoiled(seen, chosen, wrong, rng)
     seen.rotations[chosen], seen.positions[chosen] = bad.rotations, bad.positions
     return Problem(Views(hand, seen), Mounting(eye, target), exact, chosen)

@@ -34,10 +34,25 @@ Happening = Callable[..., AbstractContextManager[None]]
 Steps = Callable[..., None]
 
 
-def new_stage(seed: int, *, render: bool = False) -> Stage:
+def new_stage(seed: int, *, render: bool = False, foot: Transform | None = None) -> Stage:
+    """foot: of the item in its frame; None: its origin, as the catalogue has it."""
     episode = draw_episode("four_rooms", seed)
+    if foot is not None:
+        can = with_foot(episode.body("can"), foot)
+        bodies = tuple(can if body.name == "can" else body for body in episode.bodies)
+        episode = dataclasses.replace(episode, bodies=bodies)
     simulator = Simulator(FETCH, episode, seed, render=render)
     return judged(simulator, episode, seed)
+
+
+def with_foot(body: Body, body_from_foot: Transform) -> Body:
+    """The same body with its origin elsewhere."""
+    parts = tuple(
+        dataclasses.replace(part, body_from_part=body_from_foot @ part.body_from_part)
+        for part in body.parts
+    )
+    at = body.map_from_body @ body_from_foot.inverse()
+    return dataclasses.replace(body, map_from_body=at, parts=parts, foot=body_from_foot)
 
 
 def judged(simulator: Simulator, episode, seed: int) -> Stage:
@@ -124,6 +139,12 @@ def blind() -> Callable[[int], Stage]:
         return kept[seed]
 
     return of
+
+
+@pytest.fixture(name="new_stage", scope="session")
+def new_stage_of() -> Callable[..., Stage]:
+    """`new_stage(seed, render=False, foot=None)`: another stage."""
+    return new_stage
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from momantu_worlds.sapien.faults.tops import item_top
 from momantu_worlds.scenes.referee.demand import tilt
 
 from momantu_bt.fault import FaultError
+from momantu_bt.geometry import Transform
 from momantu_bt.messages import GripperCommand
 
 SEEDS = (0, 3, 6)
@@ -28,6 +29,21 @@ def test_a_moved_item_stands_as_far_off_on_the_same_top(blind, happening, step, 
         assert abs(shift[2]) < 1e-3
         assert tilt(after) < 0.01
         assert item_top(stage).name == top.name
+
+
+@pytest.mark.parametrize("name", ["object.moved", "object.knocked_over", "camera.phantom"])
+def test_where_the_origin_of_an_item_is_changes_nothing(new_stage, happening, step, name):
+    told = {"object.moved": {"distance": 0.08}, "camera.phantom": {"frames": 3}}.get(name, {})
+    poses = []
+    for foot in (None, Transform((0.02, 0.01, -0.07))):
+        stage = new_stage(3, render=name == "camera.phantom", foot=foot)
+        with happening(stage, name, **told):
+            step(stage)
+            shown = [stage.item.foot_at(b.map_from_body) for b in stage.simulator.added]
+            poses.append([stage.item_pose(), *shown])
+    for plain, other in zip(*poses, strict=True):
+        assert other.position == pytest.approx(plain.position, abs=2e-3)
+        assert other.angle_to(plain) < 0.01
 
 
 def test_what_finds_no_room_does_not_happen(blind, fault):

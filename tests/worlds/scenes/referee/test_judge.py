@@ -138,6 +138,16 @@ def test_an_object_is_where_and_what_it_is_said_to_be(
     assert judged(ObjectAt(asked, in_odom(truth, x, 0.7, MIDDLE), 0.02), truth) is said
 
 
+def test_a_mug_is_where_its_axis_is_however_far_its_handle_stands_out() -> None:
+    truth = Truth()
+    mug = ObjectClass("mug", diameter=0.08, height=0.09)
+    x, y, z = PlacedBody(truth.bodies["mug"], truth.pose("mug")).centre
+    assert (x, y, z) == pytest.approx((3.2, 1.1, TOP + 0.045), abs=1e-3)
+    for yaw in (0.0, 1.0, 2.5):
+        truth.moved["mug"] = Transform((3.2, 1.1, TOP), quaternion_from_rpy(0.0, 0.0, yaw))
+        assert judged(ObjectAt(mug, in_odom(truth, 3.2, 1.1, TOP + 0.045), 0.005), truth) is True
+
+
 def test_a_toppled_or_lifted_object_does_not_stand() -> None:
     truth = Truth()
     claim = ObjectAt(CAN, in_odom(truth, 2.8, 0.7, MIDDLE), 0.1)

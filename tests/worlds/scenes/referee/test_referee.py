@@ -105,6 +105,18 @@ def watch(truth: FakeTruth, seconds: float = 1.5) -> Referee:
     return referee
 
 
+def other_origin(can: Body, body_from_foot: Transform) -> Body:
+    """The same thing with its origin elsewhere, as the files of others have it."""
+    foot_from_body = body_from_foot.inverse()
+    part = can.parts[0]
+    return replace(
+        can,
+        map_from_body=can.map_from_body @ foot_from_body,
+        parts=(replace(part, body_from_part=body_from_foot @ part.body_from_part),),
+        foot=body_from_foot,
+    )
+
+
 def tilted(pose: Transform, degrees: float) -> Transform:
     return Transform(pose.position, quaternion_from_axis_angle((1, 0, 0), math.radians(degrees)))
 
@@ -357,3 +369,28 @@ def test_what_lay_at_the_start_has_not_been_tilted() -> None:
     truth.poses["mug"] = Transform(lying.position)
     referee.observe(2 * TICK)
     assert referee.verdict().measures["others_tilt"] == pytest.approx(math.pi / 2)
+
+
+@pytest.mark.parametrize("foot", [(0.0, 0.0, -0.065), (0.03, -0.02, -0.01), (-1.0, 0.5, 0.2)])
+@pytest.mark.parametrize("lying", [False, True])
+def test_where_the_origin_of_an_item_is_changes_nothing(
+    foot: tuple[float, float, float], lying: bool
+) -> None:
+    plain, truth = episode(), good_truth()
+    plain = replace(plain, goals=(replace(GOAL, lying=lying),))
+    elsewhere = Transform(foot)
+    bodies = tuple(other_origin(b, elsewhere) if b.name == "can" else b for b in plain.bodies)
+    at = tilted(truth.poses["can"], 90.0 if lying else 3.0)
+    x, y, z = at.position
+    truth.poses["can"] = Transform((x, y, z + 0.035 if lying else z), at.quaternion)
+    verdicts = []
+    for given in (plain, replace(plain, bodies=bodies)):
+        placed = given.body("can").with_foot_at(truth.poses["can"])
+        referee = Referee(given, replace(truth, poses=truth.poses | {"can": placed}), HAND)
+        for tick in range(30):
+            referee.observe(tick * TICK)
+        verdicts.append(referee.verdict())
+    assert verdicts[0].success
+    assert verdicts[1].success
+    for name, value in verdicts[0].measures.items():
+        assert verdicts[1].measures[name] == pytest.approx(value, abs=1e-9), name

@@ -40,7 +40,8 @@ class Phantom:
         top = item_top(self._stage)
         pose = self._place(top)
         parts = tuple(dataclasses.replace(p, collision=False) for p in self._item.parts)
-        self._shown = self._stage.add(Body("phantom", "phantom", pose, parts))
+        at = self._item.with_foot_at(pose)
+        self._shown = self._stage.add(Body("phantom", "phantom", at, parts))
         middle = pose.apply(np.array([0.0, 0.0, UprightCylinder(self._item).height / 2]))
         self._count = PictureCount(self._stage, self._frames, lambda: middle, self.end)
 

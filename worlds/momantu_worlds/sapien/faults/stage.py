@@ -101,12 +101,13 @@ class Stage:
         return self.simulator.truth.base()
 
     def item_pose(self) -> Transform:
-        """Pose of the item: `map_from_item`."""
-        return self.simulator.truth.pose(self.goal.item)
+        """Pose of the item, that is of its foot: `map_from_item`."""
+        return self.item.foot_at(self.simulator.truth.pose(self.goal.item))
 
     def item_prism(self, map_from_item: Transform | None = None) -> Prism:
         """The space that the item occupies, at its pose or at another one."""
-        prism = body_prism(self.item, map_from_item or self.item_pose())
+        item = self.item
+        prism = body_prism(item, item.with_foot_at(map_from_item or self.item_pose()))
         assert prism is not None  # what is brought can be touched
         return prism
 
@@ -147,7 +148,7 @@ class Stage:
 
     def move_item(self, map_from_item: Transform) -> None:
         """Move the item elsewhere, at rest; this does not count as dropped by the robot."""
-        self.simulator.put(self.goal.item, map_from_item)
+        self.simulator.put(self.goal.item, self.item.with_foot_at(map_from_item))
         if self.referee is not None:
             self.referee.relocated(self.goal.item)
 

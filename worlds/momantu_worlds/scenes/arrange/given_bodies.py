@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from momantu_bt.geometry import Transform
 from momantu_worlds.scenes.arrange.mesh_files import mesh_parts
@@ -18,6 +19,7 @@ from momantu_worlds.scenes.geometry.bodies import (
     Part,
     Sphere,
 )
+from momantu_worlds.scenes.geometry.prisms import body_points
 
 
 def given_bodies(world: WorldFile) -> Iterator[Body]:
@@ -32,7 +34,7 @@ def given_bodies(world: WorldFile) -> Iterator[Body]:
 
 def _body(world: WorldFile, name: str, note: BodyNote) -> Body:
     map_from_body = transform(note.at)
-    return Body(
+    body = Body(
         name,
         note.category,
         map_from_body,
@@ -42,6 +44,16 @@ def _body(world: WorldFile, name: str, note: BodyNote) -> Body:
         friction=note.friction,
         top=_top(note, map_from_body),
     )
+    return body if note.static else replace(body, foot=_foot(body))
+
+
+def _foot(body: Body) -> Transform | None:
+    """`body_from_foot`: its file may put the origin anywhere, so the box around it says it."""
+    points = body_points(body)
+    if points is None:
+        return None
+    (x, y, z), (far_x, far_y, _) = points.min(axis=0), points.max(axis=0)
+    return Transform(((x + far_x) / 2, (y + far_y) / 2, z))
 
 
 def _top(note: BodyNote, map_from_body: Transform) -> BodyTop | None:

@@ -117,7 +117,8 @@ class Body:
     moves. mass: kg, ignored when static; its density is uniform over the colliding parts.
     friction: coefficient, static and dynamic alike. top: the surface on which objects stand; None:
     the upper faces of its boxes. kinematic: physics does not move it, but the world does; it counts
-    as static for all who ask what may be pushed.
+    as static for all who ask what may be pushed. foot: `body_from_foot`, the middle of what it
+    stands on; None: its origin.
     """
 
     name: str
@@ -129,6 +130,15 @@ class Body:
     friction: float = 0.6
     top: BodyTop | None = None
     kinematic: bool = False
+    foot: Transform | None = None
+
+    def foot_at(self, map_from_body: Transform) -> Transform:
+        """`map_from_foot` while the body is at a pose."""
+        return map_from_body if self.foot is None else map_from_body @ self.foot
+
+    def with_foot_at(self, map_from_foot: Transform) -> Transform:
+        """`map_from_body` while its foot is at a pose."""
+        return map_from_foot if self.foot is None else map_from_foot @ self.foot.inverse()
 
 
 @dataclass(frozen=True, slots=True)

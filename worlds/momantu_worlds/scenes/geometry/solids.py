@@ -109,9 +109,10 @@ class PlacedBody:
 
     @property
     def centre(self) -> Array:
-        """Where the middle of the box around it is (3,), map, m."""
+        """The middle of the axis above its foot (3,), map, m: of a mug without its handle."""
         low, high = self._box
-        return self.pose.apply((low + high) / 2)
+        foot = self.body.foot_at(Transform()).position
+        return self.pose.apply(np.array([foot[0], foot[1], (low[2] + high[2]) / 2]))
 
     def inside(self, points: Array) -> NDArray[np.bool_]:
         """Which of points (n, 3) in the map lie in it."""

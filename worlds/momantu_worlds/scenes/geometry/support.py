@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,12 +13,18 @@ from momantu_worlds.scenes.geometry.solids import box_tops, outline
 
 
 class UprightCylinder:
-    """The smallest upright cylinder around an item's colliding parts, on its origin."""
+    """The smallest upright cylinder around an item's colliding parts, on its foot.
+
+    Poses of the item are those of its foot.
+    """
 
     def __init__(self, body: Body) -> None:
         parts = [part for part in body.parts if part.collision]
         if not parts:
             raise ValueError(f"the item {body.name!r} has nothing solid to judge it by")
+        if body.foot is not None:
+            from_body = body.foot.inverse()
+            parts = [replace(p, body_from_part=from_body @ p.body_from_part) for p in parts]
         self.radius = max(_reach(part) for part in parts)
         levels = [level for part in parts for level in _levels(part)]
         self.height = max(levels) - min(levels)

@@ -50,9 +50,9 @@ class ItemDemand:
     def measures(self, now: float, gripper: str | None) -> dict[str, float]:
         """The numbers that are judged at `now`, s. gripper: its link; None without a hand."""
         goal, truth = self.goal, self._truth
-        pose = truth.pose(goal.item)
+        placed = PlacedBody(self._body, truth.pose(goal.item))
+        pose = self._body.foot_at(placed.pose)
         support = truth.pose(goal.support)
-        placed = PlacedBody(self._body, pose)
         middle = placed.centre if goal.lying else pose.position
         away = 0.0
         if goal.marker is not None:
@@ -77,8 +77,9 @@ class ItemDemand:
         by all of its points. support: pose of the supporting body.
         """
         if not self.goal.lying:
-            within = self._support.margin(support, placed.pose) - self._item.radius
-            return within, self._support.height_above(support, placed.pose)
+            foot = self._body.foot_at(placed.pose)
+            within = self._support.margin(support, foot) - self._item.radius
+            return within, self._support.height_above(support, foot)
         points = [Transform(p) for solid in placed.solids for p in solid.vertices]
         within = min(self._support.margin(support, point) for point in points)
         return within, min(self._support.height_above(support, point) for point in points)
