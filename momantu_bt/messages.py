@@ -24,6 +24,8 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
 
 ENCODED_IF_SET = {"encoded_if_set": True}
 """Metadata of a field that only some robots have: a run's fingerprint leaves out its default."""
+GRAVITY = 9.81
+"""Of every world, m/s2, downwards."""
 
 # What a robot reports.
 
@@ -114,7 +116,7 @@ class ImuReading:
     """The newest samples of an IMU, oldest first, in `frame`; the last one is of `stamp`.
 
     times: (k,) s, rising. rates: (k, 3) angular velocities, rad/s. forces: (k, 3) specific forces,
-    m/s2: acceleration less gravity, so 9.81 upwards at rest.
+    m/s2: acceleration less gravity, so GRAVITY upwards at rest.
     """
 
     stamp: float

@@ -7,10 +7,8 @@ import math
 import numpy as np
 
 from momantu_bt.geometry import Array, Pose2D
-from momantu_bt.messages import RobotState
+from momantu_bt.messages import GRAVITY, RobotState
 
-GRAVITY = 9.81
-"""m/s2."""
 ASIDE = 0.3
 """How far a thing that has fallen may jump or roll away, m. What rolls farther comes into view of a
 camera that looks ahead."""

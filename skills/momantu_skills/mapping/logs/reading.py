@@ -37,6 +37,7 @@ def read_log(
     Raises:
         LogError: there is no such log, it cannot be read, or it holds no scans with odometry.
     """
+    _refuse_pointers(path)
     if _is_bag(path):
         return bags.read_bag(path, topic, laid)
     if path.is_dir():
@@ -56,6 +57,7 @@ def read_clouds(path: Path, cloud: str | None = None, imu: str | None = None) ->
     Raises:
         LogError: it is no bag of ROS, it cannot be read, or it holds no clouds.
     """
+    _refuse_pointers(path)
     if not _is_bag(path):
         raise LogError(
             f"{path} is no bag of ROS; in three dimensions only bags with sensor_msgs/PointCloud2 "
@@ -64,18 +66,22 @@ def read_clouds(path: Path, cloud: str | None = None, imu: str | None = None) ->
     return clouds.read_clouds(path, cloud, imu)
 
 
-def _is_bag(path: Path) -> bool:
-    """Whether a log is a bag of ROS 1 or 2.
-
-    Raises:
-        LogError: it cannot be read, was not fetched, or is a folder without a log.
-    """
+def _refuse_pointers(path: Path) -> None:
+    """Raise a LogError if a log, or a file of its folder, was not fetched or cannot be read."""
     for file in [path] if not path.is_dir() else sorted(path.iterdir()):
         if file.is_file() and _head(file).startswith(_POINTER):
             raise LogError(
                 f"{file} is a pointer of Git LFS, and not the log itself; `git lfs pull` in its "
                 "repository fetches it"
             )
+
+
+def _is_bag(path: Path) -> bool:
+    """Whether a log is a bag of ROS 1 or 2.
+
+    Raises:
+        LogError: it cannot be read, or is a folder without a log.
+    """
     if not path.is_dir():
         head = _head(path)
         second = head.startswith(_SQLITE) or (head.startswith(_MCAP) and _ROS2_PROFILE in head)

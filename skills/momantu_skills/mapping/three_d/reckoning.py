@@ -14,7 +14,7 @@ from momantu_bt.geometry import (
     quaternion_from_axis_angle,
     quaternion_product,
 )
-from momantu_bt.messages import ImuReading
+from momantu_bt.messages import GRAVITY, ImuReading
 from momantu_bt.motion import Motion
 
 KEPT = 1.0
@@ -23,7 +23,6 @@ RESTING = 1e-4
 """Motion of the wheels between two readings below which the base stands, m and rad."""
 MOST_RESTING = 2000
 """Samples at rest whose mean is the gyroscopes' bias; later ones count as one of so many."""
-GRAVITY = 9.81
 TILTED = 0.5
 """Specific force, m/s2, by which its length may differ from gravity's: more is a bump."""
 _SPAN = 0.2

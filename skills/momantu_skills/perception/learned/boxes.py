@@ -20,8 +20,6 @@ from momantu_skills.perception.geometry.rectangles import (
 )
 from momantu_skills.perception.learned.solids import Solid
 
-UPRIGHT = 0.999
-"""Cosine of the tilt up to which a box stands."""
 LEAST = 25
 """Fewest points of a box for fitting its sides."""
 BEYOND = 0.03
@@ -52,7 +50,7 @@ def sides(thing: Solid, own: Array, normals: Array, high: float) -> Sides | None
     own: (n, 3) its points, normals: (n, 3), 0 where they are not known, high: its upper end; all in
     its frame, m.
     """
-    if abs(float(thing.frame_from_object.rotation[2, 2])) < UPRIGHT:
+    if not thing.upright:
         return None
     ball = np.linalg.norm(own, axis=1) < float(np.linalg.norm(thing.size)) / 2 + BEYOND
     body, normals = own[ball], normals[ball]

@@ -19,8 +19,8 @@ from momantu_bt.messages import ObjectClass
 from momantu_skills.perception.geometry.rectangles import smallest_rectangle
 from momantu_skills.perception.learned.bodies import Body, asked_body, fitted
 from momantu_skills.perception.learned.fusing import Look
-from momantu_skills.perception.learned.refining import LEVEL, UPRIGHT
-from momantu_skills.perception.learned.solids import Solid
+from momantu_skills.perception.learned.refining import LEVEL
+from momantu_skills.perception.learned.solids import UPRIGHT, Solid
 
 LIKELY = 0.2
 """Least probability that a thing is of the asked category."""
@@ -115,7 +115,7 @@ def _turned(thing: Solid, body: Body) -> Iterator[tuple[Body, Transform]]:
     if body.round:
         yield body, turn if thing.has_axis else Transform((0.0, 0.0, 0.0))
         return
-    if thing.has_axis or abs(float(turn.rotation[2, 2])) < UPRIGHT:
+    if thing.has_axis or not thing.upright:
         yaw = smallest_rectangle(thing.points[:, :2]).yaw
     else:
         yaw = turn.yaw

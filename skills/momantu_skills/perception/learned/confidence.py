@@ -17,14 +17,11 @@ OF_CLASS, OF_AGREEING, OF_CELLS, OF_UPRIGHT = 6.7, 2.75, 1.7, 1.25
 its cells over USUAL, and of whether it is upright (a thing without an axis counts by half)."""
 USUAL = 300.0
 """Cells of a usual thing."""
-UPRIGHT = 0.999
-"""Cosine of the tilt up to which an axis is upright."""
 
 
 def chance(thing: Solid) -> float:
     """The chance, 0..1, that a found thing is right."""
-    axis = abs(float(thing.frame_from_object.rotation[2, 2]))
-    upright = float(axis > UPRIGHT) if thing.has_axis else 0.5
+    upright = float(thing.upright) if thing.has_axis else 0.5
     worth = (
         BIAS
         + OF_CLASS * thing.sure

@@ -52,8 +52,6 @@ TOP = 98.0
 """Percentile of the points' heights at the upper side of what lies; noise is above it."""
 STANDS = 0.025
 """Height of a thing's lower end above the surface up to which it stands there, m."""
-UPRIGHT = 0.999
-"""Cosine of the tilt up to which an axis is upright; `solids` makes nearly upright ones so."""
 
 
 class Seen(NamedTuple):
@@ -110,7 +108,7 @@ def _ends(thing: Solid, body: Array) -> tuple[float, float]:
         for found, told in zip(shown, (-half, half), strict=True)
     )
     up, middle = float(thing.frame_from_object.rotation[2, 2]), thing.frame_from_object.position[2]
-    if abs(up) > UPRIGHT and middle - half < STANDS:
+    if thing.upright and middle - half < STANDS:
         return (-float(middle), high) if up > 0.0 else (low, float(middle))
     return low, high
 

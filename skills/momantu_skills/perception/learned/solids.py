@@ -25,6 +25,9 @@ LYING = math.radians(30.0)
 """The same of a box, which has a flat side below however it was put down; and how far the axis of a
 can or mug that lies may be from level. How what lies is turned is seen less well."""
 
+UPRIGHT = 0.999
+"""Cosine of the tilt up to which an axis is upright; nearly upright ones are made so."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solid:
@@ -56,6 +59,11 @@ class Solid:
     def has_axis(self) -> bool:
         """Whether it is round about z, but for a handle."""
         return self.symmetry not in (Symmetry.BOX, Symmetry.NONE)
+
+    @property
+    def upright(self) -> bool:
+        """Whether its z axis is the vertical, up or down."""
+        return abs(float(self.frame_from_object.rotation[2, 2])) > UPRIGHT
 
     def moved(self, target_from_frame: Transform) -> Solid:
         """The same in another frame that is level too."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from momantu_worlds.robots import kinova_jackal
 from momantu_worlds.sapien.config import ImuErrors
-from momantu_worlds.sapien.sensors.imu import GRAVITY, Imu, Moving
+from momantu_worlds.sapien.sensors.imu import AT_REST, Imu, Moving
 from momantu_worlds.sapien.simulator import Simulator
 from momantu_worlds.testing import plain_episode
 
@@ -47,7 +47,7 @@ def test_noise_has_the_density_that_is_said() -> None:
     told = sampled(at_rest(), errors, 20.0)
     assert len(told.times) == 20 * 120 + 1
     assert told.rates.std() == pytest.approx(errors.rate_noise * math.sqrt(120), rel=0.05)
-    spread = (told.forces - GRAVITY).std()
+    spread = (told.forces - AT_REST).std()
     assert spread == pytest.approx(errors.force_noise * math.sqrt(120), rel=0.05)
     assert np.abs(told.rates.mean(axis=0)).max() < 4 * errors.rate_noise / math.sqrt(20.0)
 
@@ -59,7 +59,7 @@ def test_biases_are_constant_in_an_episode_and_differ_between_seeds() -> None:
         told = sampled(at_rest(), errors, 0.1, seed)
         assert np.ptp(told.rates, axis=0) == pytest.approx(0.0)
         all_rates.append(told.rates[0])
-        all_forces.append(told.forces[0] - GRAVITY)
+        all_forces.append(told.forces[0] - AT_REST)
     assert np.std(all_rates) == pytest.approx(errors.rate_bias, rel=0.1)
     assert np.std(all_forces) == pytest.approx(errors.force_bias, rel=0.1)
 

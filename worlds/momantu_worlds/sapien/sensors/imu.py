@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from momantu_bt.geometry import Array, matrix_from_quaternion
-from momantu_bt.messages import ImuReading, frozen
+from momantu_bt.messages import GRAVITY, ImuReading, frozen
 from momantu_bt.robot import ImuSensor
 from momantu_bt.world import seeded
 from momantu_worlds.sapien.config import ImuErrors
 
-GRAVITY = np.array([0.0, 0.0, 9.81])
+AT_REST = np.array([0.0, 0.0, GRAVITY])
 """Specific force at rest, m/s2, in the map."""
 KEPT = 0.25
 """Age of the oldest sample of a reading, s: who reads at 4 Hz misses none."""
@@ -82,7 +82,7 @@ class Imu:
         spread = 1.0 / math.sqrt(span)  # of white noise of density 1 over the span
         rate = moving.rotation.T @ moving.turning + self._rate_bias
         rate = rate + errors.rate_noise * spread * random.standard_normal(3)
-        force = moving.rotation.T @ (change + GRAVITY) + self._force_bias
+        force = moving.rotation.T @ (change + AT_REST) + self._force_bias
         force = force + errors.force_noise * spread * random.standard_normal(3)
         self._samples.append((now, rate, force))
         while self._samples[0][0] < now - KEPT:

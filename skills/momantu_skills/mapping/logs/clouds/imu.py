@@ -10,13 +10,13 @@ import numpy as np
 
 from momantu_bt.formats.names import counted
 from momantu_bt.geometry import Array, Transform, rotation_between
+from momantu_bt.messages import GRAVITY
 from momantu_skills.mapping.logs import ros
 from momantu_skills.mapping.logs.cleaning import backwards
 from momantu_skills.mapping.logs.clouds.log import Samples
 from momantu_skills.mapping.logs.log import LogError
 from momantu_skills.mapping.logs.transforms import Transforms, plain
 
-GRAVITY = 9.81
 IN_G = (0.8, 1.2)
 """Mean length of specific forces that are written in g instead of m/s2."""
 REST = 0.5
