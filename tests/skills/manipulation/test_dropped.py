@@ -7,10 +7,10 @@ import math
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from momantu_skills.manipulation.scene.dropped import ASIDE, GRAVITY, dropped
+from momantu_skills.manipulation.scene.dropped import ASIDE, dropped
 
 from momantu_bt.geometry import Pose2D, Transform
-from momantu_bt.messages import DetectedObject, Pose, RobotState
+from momantu_bt.messages import GRAVITY, DetectedObject, Pose, RobotState
 from momantu_bt.service import HeldObject
 from tests.skills.scenery.table import SceneOf, Tabletop
 
