@@ -220,7 +220,7 @@ class Place(Skill):
         yield from self._look(arm, pose.position, [corners])
         seen = self._judged(arm, pose, held, before)
         hidden = arm.scene.seen_space.hidden(corners, BEHIND)
-        if seen != "there" and hidden.mean() > HIDDEN:
+        if seen == "about there" or (seen != "there" and hidden.mean() > HIDDEN):
             yield from self._clear_the_view(arm, corners)
             yield from self._look(arm, pose.position, [corners])
             seen = self._judged(arm, pose, held, before)
@@ -231,19 +231,24 @@ class Place(Skill):
             raise Failure("LOST", f"the {what} is not where it was set down", position=where)
 
     def _judged(self, arm: Arm, pose: Transform, held: HeldObject, before: Array) -> str:
-        """Whether the object is "there", "toppled" or "gone"; remember where it is."""
+        """Whether the object is "there", "toppled" or "gone"; remember where it is.
+
+        "about there": it was held by its rim, where it may turn between the fingers by centimetres,
+        and too little of the rim is seen to tell where it stands.
+        """
         thing, points = held.object, arm.scene.points
         bottom = float(pose.position[2]) - resting.rise(thing, pose)
         new = verification.unseen_before(points, before)
-        lying = abs(float(pose.rotation[2, 2])) < resting.LYING
+        lying, by_rim = abs(float(pose.rotation[2, 2])) < resting.LYING, rims.held_by_rim(held)
         if lying:
             found = lying_down.beside(new, pose, thing, bottom)
         else:
-            found = verification.beside(new, pose, thing, bottom, rims.held_by_rim(held))
+            found = verification.beside(new, pose, thing, bottom, by_rim)
         if found is None and lying:
             return lying_down.at(points, pose, thing, bottom)
         if found is None:
-            return verification.standing(points, pose, thing, bottom)
+            stands = verification.standing(points, pose, thing, bottom)
+            return "about there" if by_rim and stands == "there" else stands
         if lying or float(np.linalg.norm(found.position - pose.position)) > SEEN:
             self._spot = found
         return "there"

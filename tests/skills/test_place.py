@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from momantu_skills.manipulation.hand import verification
+from momantu_skills.manipulation.hand import rims, verification
 from momantu_skills.manipulation.scene.service import PlanningSceneService
 from momantu_skills.manipulation.scene.surroundings import SeenSpace
 from momantu_skills.place import SEEN, Place
@@ -260,3 +260,23 @@ def test_an_arm_that_hides_the_spot_is_taken_away_before_the_can_is_called_lost(
     state = robot.state()
     arm = robot.description.groups["arm"].joints
     assert all(abs(state.position(name) - ready[name]) < 0.05 for name in arm if name in ready)
+
+
+def test_where_a_thing_held_by_its_rim_stands_is_looked_at_once_more(
+    holding: Carrying, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot, scene = holding()
+    turned, looked = Transform((0.03, 0.0, 0.0)), []
+
+    def little_at_first(points: Any, pose: Transform, *_: Any) -> Transform | None:
+        looked.append(pose)
+        return None if len(looked) == 1 else pose @ turned
+
+    monkeypatch.setattr(rims, "held_by_rim", lambda held: True)
+    monkeypatch.setattr(verification, "beside", little_at_first)
+    result = place(robot, scene)
+    assert result.status == "SUCCESS", result.explain()
+    assert len(looked) == 2
+    claim = result.claim()
+    assert isinstance(claim, SetDown)
+    assert claim.odom_from_object == looked[-1] @ turned
