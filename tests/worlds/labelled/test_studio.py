@@ -62,6 +62,25 @@ def test_a_seed_gives_the_same_picture_whatever_was_before(pictures: dict[int, L
     assert again.things == there.things
 
 
+def test_more_pictures_of_a_seed_show_the_same_things_from_elsewhere(
+    pictures: dict[int, Labelled],
+) -> None:
+    first, *more = Studio(["four_rooms"], testing=False).pictures(0, 3)
+    assert np.array_equal(first.image.color, pictures[0].image.color)
+    assert more
+    for other in more:
+        apart = other.odom_from_camera.position - first.odom_from_camera.position
+        assert np.linalg.norm(apart) > 0.05
+        there = {thing.number: thing for thing in other.things}
+        assert there.keys() & {thing.number for thing in first.things}
+        for thing in first.things:
+            if thing.number in there:
+                one = first.odom_from_camera @ thing.camera_from_object
+                two = other.odom_from_camera @ there[thing.number].camera_from_object
+                assert np.linalg.norm(one.position - two.position) < 0.04
+                assert thing.size == there[thing.number].size
+
+
 def test_testing_shows_other_families(pictures: dict[int, Labelled]) -> None:
     tested = Studio(["four_rooms"], testing=True).picture(0)
     trained = {thing.family for made in pictures.values() for thing in made.things}

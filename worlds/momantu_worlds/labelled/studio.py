@@ -89,7 +89,11 @@ class Studio:
         self._set: _Set | None = None
 
     def picture(self, seed: int) -> Labelled:
-        """The picture of a seed.
+        """The picture of a seed; raises what `pictures` raises."""
+        return self.pictures(seed, 1)[0]
+
+    def pictures(self, seed: int, count: int) -> tuple[Labelled, ...]:
+        """The picture of a seed, and more of the same heap from elsewhere; `count` at most.
 
         Raises:
             WorldError: the world has no open surface, no view shows a thing, or SAPIEN cannot
@@ -103,9 +107,9 @@ class Studio:
             self._set = _Set(world, layout)
         for attempt in range(ATTEMPTS):
             draw = seeded(seed, "picture", attempt, "test" if self._stock.testing else "train")
-            made = self._set.take(draw, seed, self._stock, self._manner)
-            if made is not None:
-                return replace(made, categories=self._stock.categories)
+            made = self._set.take(draw, seed, self._stock, self._manner, count)
+            if made:
+                return tuple(replace(one, categories=self._stock.categories) for one in made)
         raise WorldError(f"no view of seed {seed} in {world} shows a thing; leave this seed out")
 
 
@@ -140,8 +144,10 @@ class _Set:
         for entity in list(self.scene.entities):
             self.scene.remove_entity(entity)
 
-    def take(self, draw: Draw, seed: int, stock: Stock, manner: Manner) -> Labelled | None:
-        """A picture of a new heap; None if none of it is seen."""
+    def take(
+        self, draw: Draw, seed: int, stock: Stock, manner: Manner, count: int
+    ) -> list[Labelled]:
+        """Pictures of a new heap; none if the first one shows nothing of it."""
         table = self.tables[int(draw.integers(len(self.tables)))]
         half = np.array(table.size) / 2
         if table.round:
@@ -156,7 +162,14 @@ class _Set:
         self._relight(draw)
         entities = [self._add(each.parts, map_from_top @ each.top_from_thing) for each in laid]
         try:
-            return self._shoot(draw, seed, laid, entities, map_from_top, top_from_camera, table)
+            made: list[Labelled] = []
+            while len(made) < count:
+                one = self._shoot(draw, seed, laid, entities, map_from_top, top_from_camera, table)
+                if one is None:
+                    break
+                made.append(one)
+                top_from_camera = _viewpoint(draw, table)
+            return made
         finally:
             for entity in entities:
                 self.scene.remove_entity(entity)
