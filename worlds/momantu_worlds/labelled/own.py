@@ -1,4 +1,4 @@
-"""A category of one's own, from a folder of meshes.
+"""A category of one's own, from meshes.
 
 Every fourth mesh in the order of their names is kept for testing, of two or three the last one. A
 mesh stands as in its file, or lies on any side of its convex hull on which it does not tip over.
@@ -19,9 +19,10 @@ from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.errors import InputError
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.world import seeded
+from momantu_worlds.labelled.own_files import mesh_files
 from momantu_worlds.labelled.shape import Draw, Shape, draw_color
 from momantu_worlds.scenes.arrange.mesh_files import mesh_parts
-from momantu_worlds.scenes.file.furniture import MESH_ENDINGS, MeshUse
+from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.geometry.bodies import Hull, Mesh, Part
 
 HELD_BACK = 4
@@ -82,12 +83,14 @@ class OwnCategory:
 
 
 def own_category(
-    name: str, folder: Path, scale: float = 1.0, up: Literal["z", "y"] = "z", *, testing: bool
+    name: str, meshes: Path, scale: float = 1.0, up: Literal["z", "y"] = "z", *, testing: bool
 ) -> OwnCategory:
-    """The category of a folder's meshes. scale: metres of a unit of the files. up: their axis.
+    """The category of some meshes. scale: metres of a unit of the files. up: their axis.
+
+    meshes: a folder or a pattern; see `mesh_files`.
 
     Raises:
-        InputError: the name cannot be one, the folder holds too few meshes, or one is too large.
+        InputError: the name cannot be one, there are too few meshes, or one is too large.
         WorldError: a mesh cannot be read.
     """
     if not _NAME.fullmatch(name) or name in (*USUAL, "nothing", "handle"):
@@ -95,25 +98,21 @@ def own_category(
             f"--category {name!r}; expected a word of small letters, digits and _ that is none of "
             f"{', '.join(USUAL)}, nothing, handle"
         )
-    if not folder.is_dir():
-        raise InputError(f"--meshes {folder}: there is no such folder")
-    files = sorted(file for file in folder.iterdir() if file.name.lower().endswith(MESH_ENDINGS))
-    if not files:
-        raise InputError(f"--meshes {folder} holds no mesh; endings: {', '.join(MESH_ENDINGS)}")
+    files = mesh_files(meshes)
     held = [number % HELD_BACK == HELD_BACK - 1 for number in range(len(files))]
     held[-1] |= len(files) > 1 and not any(held)
     if testing and not any(held):
         raise InputError(
-            f"--meshes {folder} holds one mesh, so none is kept for testing; add a second one"
+            f"--meshes {meshes} holds one mesh, so none is kept for testing; add a second one"
         )
-    models = [_model(file, scale, up) for file in files]
+    models = [_model(family, file, scale, up) for family, file in files.items()]
     symmetry = Symmetry.ROUND if all(model.round for model in models) else Symmetry.NONE
     kept = tuple(model for model, is_held in zip(models, held, strict=True) if not is_held)
     tested = tuple(model for model, is_held in zip(models, held, strict=True) if is_held)
     return OwnCategory(name, symmetry, kept, tested)
 
 
-def _model(file: Path, scale: float, up: Literal["z", "y"]) -> Model:
+def _model(family: str, file: Path, scale: float, up: Literal["z", "y"]) -> Model:
     parts = mesh_parts(MeshUse(file=str(file), scale=scale, up=up), file, standing=True, color=None)
     vertices = np.concatenate(
         [part.geometry.vertices for part in parts if isinstance(part.geometry, Mesh)]
@@ -135,7 +134,7 @@ def _model(file: Path, scale: float, up: Literal["z", "y"]) -> Model:
     x, y, z = extent.tolist()
     if is_round:
         x = y = max(x, y)
-    shape = Shape("", file.stem, (x, y, z), shown, corners, None)
+    shape = Shape("", family, (x, y, z), shown, corners, None)
     return Model(shape, _lying(corners), is_round)
 
 

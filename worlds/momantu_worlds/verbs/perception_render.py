@@ -33,7 +33,8 @@ def render(
         bool, typer.Option("--testing", help="Of the families that are never trained on.")
     ] = False,
     meshes: Annotated[
-        list[Path] | None, typer.Option(help="A folder of meshes of one's own; repeatable.")
+        list[Path] | None,
+        typer.Option(help="A folder of meshes of one's own, or a pattern; repeatable."),
     ] = None,
     category: Annotated[
         list[str] | None, typer.Option(help="The category of each --meshes.")
