@@ -21,7 +21,8 @@ def is_fixed(world: WorldFile) -> bool:
 
 
 def _is_drawn(thing: ObjectNote) -> bool:
-    return thing.at is None or thing.extent is None or len(thing.tops) > 1
+    sized = thing.extent is not None or thing.mesh is not None
+    return thing.at is None or not sized or len(thing.tops) > 1
 
 
 def _amounts(value: Any) -> Iterator[float]:

@@ -1,10 +1,12 @@
 """Anything loose may be what is brought: it is placed, judged, and nothing else is like it."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from momantu_worlds.scenes.arrange.episode import bodies
 from momantu_worlds.scenes.arrange.layout import Layout
 from momantu_worlds.scenes.arrange.variation import vary
@@ -18,6 +20,7 @@ from momantu_worlds.scenes.loading import load_world
 from momantu_worlds.worlds import four_rooms
 
 from momantu_bt.geometry import Transform
+from momantu_bt.world import WorldError
 
 SIZES: dict[str, tuple[float, float, float]] = {
     "can": (0.07, 0.07, 0.13),
@@ -90,6 +93,45 @@ def test_nothing_of_its_kind_is_like_it(kind: ObjectKind) -> None:
 def test_a_box_with_a_radius_is_refused_with_what_it_has() -> None:
     with pytest.raises(ValueError, match="a box has a size, no radius and height"):
         world_with({"kind": "box", "radius": 0.03, "height": 0.1})
+
+
+@pytest.fixture
+def tin(tmp_path: Path) -> Path:
+    """A mesh of 66 x 66 x 102 mm whose origin lies beside it."""
+    mesh = trimesh.creation.cylinder(0.033, 0.102)
+    mesh.apply_translation((0.2, -0.1, 0.03))
+    mesh.export(tmp_path / "tin.ply")
+    return tmp_path / "tin.ply"
+
+
+def test_a_mesh_stands_on_its_table_as_what_its_kind_says(tin: Path) -> None:
+    for seed in range(4):
+        world = world_with({"kind": "can", "mesh": str(tin), "mass": 0.35})
+        assert world.mesh_files()[-1] == tin
+        layout = vary(world, seed)
+        placed = layout.object("thing")
+        assert placed.thing.size == pytest.approx((0.066, 0.066, 0.102), abs=1e-4)
+        item = next(b for b in bodies(world, layout) if b.name == "thing")
+        assert (item.category, item.mass, item.static) == ("can", 0.35, False)
+        table = layout.tables[placed.table]
+        solid = PlacedBody(item, table.map_from_top.inverse() @ item.map_from_body)
+        assert solid.lowest == pytest.approx(0.0, abs=1e-6)
+        assert solid.centre[:2] == pytest.approx((placed.at.x, placed.at.y), abs=1e-4)
+        assert UprightCylinder(item).height == pytest.approx(0.102, abs=1e-4)
+
+
+def test_a_mesh_as_an_object_is_refused_with_what_it_cannot_have(tin: Path) -> None:
+    mesh = {"file": str(tin), "collision": "none"}
+    for wrong, told in (
+        ({"mesh": str(tin), "radius": 0.03, "height": 0.1}, "a mesh has its own sizes"),
+        ({"mesh": str(tin), "lying": True}, "a mesh does not lie here"),
+        ({"mesh": mesh}, "leave out mesh.collision"),
+        ({"mesh": "tin.blend"}, "not a mesh file"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            world_with({"kind": "can", **wrong})
+    with pytest.raises(WorldError, match=r"nowhere\.ply"):
+        vary(world_with({"kind": "can", "mesh": str(tin.with_name("nowhere.ply"))}), 0)
 
 
 @pytest.mark.parametrize("kind", LYING_KINDS)

@@ -18,6 +18,7 @@ import numpy as np
 from momantu_bt.geometry import Pose2D
 from momantu_bt.world import seeded
 from momantu_worlds.scenes.arrange.layout import PlacedTable, PlacedTag, PlacedThing
+from momantu_worlds.scenes.arrange.mesh_files import mesh_parts, mesh_size
 from momantu_worlds.scenes.arrange.spots import (
     Disc,
     SetDown,
@@ -71,7 +72,7 @@ def _placed_object(
 ) -> PlacedThing:
     """Place an object where nothing else stands; after TRIES draws, at the last draw."""
     table = note.tops[int(seeded(seed, "which top", name).integers(len(note.tops)))]
-    thing = _thing_of(note, seed, name)
+    thing = _thing_of(world, note, seed, name)
     taken = [disc_of(other) for other in before if other.table == table]
     taken += [tag_disc(tag) for tag in tags if tag.table == table]
     spot = Spot(name, table, note.at, note.shift, thing.reach + RIM, note.yaw, note.turn)
@@ -82,11 +83,17 @@ def _placed_object(
     return PlacedThing(name, thing, table, at, note.friction)
 
 
-def _thing_of(note: ObjectNote, seed: int, name: str) -> Thing:
+def _thing_of(world: WorldFile, note: ObjectNote, seed: int, name: str) -> Thing:
     """An object with the values of the file; missing values are drawn for its kind."""
     draw = seeded(seed, "object", name)
     paint = seeded(seed, "paint", name) if note.color is None else None
-    thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
+    if note.mesh is None:
+        thing = draw_thing(note.kind, draw, paint, size=note.extent, color=note.color)
+    else:
+        file = world.beside(note.mesh.file)
+        size = mesh_size(note.mesh, file)
+        parts = mesh_parts(note.mesh, file, standing=True, color=note.color)
+        thing = replace(draw_thing(note.kind, draw, paint, size=size), mesh=parts)
     thing = thing if note.mass is None else replace(thing, mass=note.mass)
     return replace(thing, lying=True) if note.lying else thing
 

@@ -41,6 +41,7 @@ class Thing:
     radius: of the circle around everything that sticks out, m; height: m; mass: kg.
     size: (3,) the box's edges, or (2 radius, 2 radius, height) of the round body alone.
     look: its paint; None: the usual one of its kind, in `color`. lying: it lies on its side.
+    mesh: what it is made of instead, with the foot's middle at the origin.
     """
 
     kind: ObjectKind
@@ -49,6 +50,7 @@ class Thing:
     color: Color
     look: Look | None = None
     lying: bool = False
+    mesh: tuple[Part, ...] = ()
 
     @property
     def height(self) -> float:
@@ -68,12 +70,14 @@ class Thing:
         """Radius of the upright cylinder around it, handles included, m."""
         if self.lying:
             return math.hypot(self.size[0], self.size[2]) / 2
-        if self.kind == "box":
+        if self.kind == "box" or self.mesh:
             return math.hypot(self.size[0], self.size[1]) / 2
         return self.size[0] / 2 + (_handle(self.size[2]) if self.kind == "mug" else 0.0)
 
     def parts(self) -> tuple[Part, ...]:
         """What it is made of."""
+        if self.mesh:
+            return self.mesh
         makers = {"can": _can, "bottle": _bottle, "box": _box, "mug": _mug, "bowl": _bowl}
         return makers[self.kind](self, self.look or usual_look(self.kind, self.color))
 

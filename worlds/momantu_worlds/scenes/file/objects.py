@@ -12,6 +12,7 @@ from momantu_bt.geometry import Transform
 from momantu_bt.tags import USUAL_FAMILY, TagFamily, TagPlate
 from momantu_worlds.scenes.catalogue.objects import LYING_KINDS, OBJECT_KINDS, ObjectKind
 from momantu_worlds.scenes.catalogue.tags import MOST_IDS, known_ids, picture_edge
+from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.values import (
     Friction,
     Name,
@@ -33,12 +34,14 @@ class ObjectNote(Part):
     """A loose object on a table or board. Omitted values are drawn from the seed.
 
     on: one surface, or several of which an episode takes one. at: position on it, in its own frame;
-    anywhere on it if omitted. size: of a box; radius and height: of all round kinds. color: the
-    object has the usual paint of its kind in this colour, not one of many patterns. lying: it lies
-    on its side; `yaw` is the direction from its bottom to its top then.
+    anywhere on it if omitted. size: of a box; radius and height: of all round kinds. mesh: it is
+    this mesh, and counts as one of its kind. color: the object has the usual paint of its kind in
+    this colour, not one of many patterns. lying: it lies on its side; `yaw` is the direction from
+    its bottom to its top then.
     """
 
     kind: ObjectKind
+    mesh: MeshUse | None = None
     on: Name | Annotated[tuple[Name, ...], Field(min_length=1, max_length=50)]
     at: Point | None = None
     yaw: Angle = 0.0
@@ -62,6 +65,9 @@ class ObjectNote(Part):
 
     @model_validator(mode="after")
     def _sizes(self) -> Self:
+        if self.mesh is not None:
+            self._of_mesh(self.mesh)
+            return self
         box = self.kind == "box"
         if box and (self.radius is not None or self.height is not None):
             raise ValueError("a box has a size, no radius and height")
@@ -70,6 +76,14 @@ class ObjectNote(Part):
         if (self.radius is None) != (self.height is None):
             raise ValueError("write both radius and height, or neither")
         return self
+
+    def _of_mesh(self, mesh: MeshUse) -> None:
+        if any(size is not None for size in (self.radius, self.height, self.size)):
+            raise ValueError("a mesh has its own sizes; scale it by mesh.scale or mesh.size")
+        if self.lying:
+            raise ValueError("a mesh does not lie here; turn it in its file, and let it stand so")
+        if mesh.collision == "none":
+            raise ValueError("a mesh that nothing touches cannot stand; leave out mesh.collision")
 
     @property
     def tops(self) -> tuple[str, ...]:

@@ -81,6 +81,7 @@ class WorldFile(Part):
         uses = [table.mesh for table in self.tables.values()]
         uses += [piece.mesh for piece in self.furniture.values()]
         uses += [part.mesh for body in self.bodies.values() for part in body.parts]
+        uses += [thing.mesh for thing in (self.item, *self.objects.values()) if thing is not None]
         return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
 
     def files(self) -> tuple[Path, ...]:
