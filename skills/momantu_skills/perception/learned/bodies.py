@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from momantu_bt.categories import Symmetry
-from momantu_bt.geometry import Array, Transform
+from momantu_bt.geometry import Array
 from momantu_bt.messages import ObjectClass
 
 SLENDER = 1.3
@@ -19,19 +19,6 @@ NECK = 0.3
 """Diameter of a bottle's neck as a share of the bottle's."""
 SKIN = 0.008
 """Thickness of the outer part of a body that a ray may graze, m; at most half of the body."""
-
-ROUNDS = 4
-"""Steps of a fit."""
-REACH = 0.006
-"""Distance from the surface from which on a point pulls no harder, m."""
-LEAST = 1e-4
-"""Weight of staying where it is, for ways that the points do not tell."""
-STEPS = (
-    (Transform((1e-4, 0.0, 0.0)), 1e-4),
-    (Transform((0.0, 1e-4, 0.0)), 1e-4),
-    (Transform.from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, 1e-3)), 1e-3),
-)
-"""Small motions of a body, and how large they are, m and rad."""
 
 
 class Body(NamedTuple):
@@ -96,27 +83,6 @@ def asked_body(asked: ObjectClass, symmetry: Symmetry) -> Body | None:
         return None
     half = np.array([asked.diameter, asked.diameter, asked.height]) / 2
     return Body(half, round=True, hollow=symmetry is Symmetry.HANDLE, slender=slender)
-
-
-def fitted(body: Body, pose: Transform, points: Array) -> Transform:
-    """The pose beside a rough one at which points (n, 3) lie on the body's surface.
-
-    It is shifted across the body's axis and turned about it, by the method of Gauss and Newton on
-    the points' distances. Those farther than REACH from the surface pull no harder than at it.
-    """
-    for _ in range(ROUNDS):
-        away = body.distances(pose.inverse().apply(points))
-        slopes = np.column_stack(
-            [
-                (body.distances((pose @ step).inverse().apply(points)) - away) / amount
-                for step, amount in STEPS
-            ]
-        )
-        pull = np.minimum(1.0, REACH / np.maximum(np.abs(away), 1e-9))
-        square = slopes.T @ (pull[:, None] * slopes) + LEAST * len(points) * np.eye(len(STEPS))
-        x, y, turn = np.linalg.solve(square, -slopes.T @ (pull * away))
-        pose = pose @ Transform.from_rpy((float(x), float(y), 0.0), (0.0, 0.0, float(turn)))
-    return pose
 
 
 def _between(start: float, way: Array, half: float) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from momantu_bt.categories import Symmetry
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.messages import ObjectClass
 from momantu_skills.perception.geometry.rectangles import smallest_rectangle
-from momantu_skills.perception.learned.bodies import Body, asked_body, fitted
+from momantu_skills.perception.learned.bodies import Body, asked_body
 from momantu_skills.perception.learned.fusing import Look
 from momantu_skills.perception.learned.refining import LEVEL
 from momantu_skills.perception.learned.solids import UPRIGHT, Solid
@@ -45,8 +45,6 @@ SIDE = 0.55
 """Least share that is on its surface, of a body within which something may be seen too."""
 SOUND = 0.96
 """Least share, of what is seen on, in and through the body, that is on it."""
-FITTED = 0.9
-"""What a pose is worth that had to be fitted to the points: other things can be met so too."""
 WORTH = 0.85
 """How well a body that agrees with all that is seen explains it: the rest may be otherwise."""
 
@@ -64,11 +62,10 @@ def completed(
         return None
     eye = np.mean([look.eye for look in looks], axis=0)
     best: tuple[float, Body, Transform] | None = None
-    for turned, rough in _placed(thing, body, eye, level):
-        for pose, share in _beside(turned, rough, thing.points):
-            worth = share * _worth(turned, pose, thing.points, looks, level)
-            if worth > (best[0] if best else 0.0):
-                best = worth, turned, pose
+    for turned, pose in _placed(thing, body, eye, level):
+        worth = _worth(turned, pose, thing.points, looks, level)
+        if worth > (best[0] if best else 0.0):
+            best = worth, turned, pose
     if best is None:
         return None
     worth, body, pose = best
@@ -85,9 +82,7 @@ def _placed(thing: Solid, body: Body, eye: Array, level: float) -> Iterator[tupl
         own = thing.points @ turn.rotation
         low, high = np.percentile(own, [ENDS, 100.0 - ENDS], axis=0)
         upright = abs(float(turn.rotation[2, 2])) > UPRIGHT
-        if not body.round:
-            low[2] = level  # it stands there; its top may be what is not seen
-        elif upright and abs(high[2] - level - 2 * turned.half[2]) > AGREES:
+        if upright and abs(high[2] - level - 2 * turned.half[2]) > AGREES:
             continue
         if not _may_be(turned, high - low, thing):
             continue
@@ -100,13 +95,6 @@ def _placed(thing: Solid, body: Body, eye: Array, level: float) -> Iterator[tupl
         along = [level + turned.half[2]] if upright else _middles(low[2], high[2], turned.half[2])
         for middle in product(*across, along):
             yield turned, Transform(turn.rotation @ np.array(middle), turn.quaternion)
-
-
-def _beside(body: Body, rough: Transform, points: Array) -> Iterator[tuple[Transform, float]]:
-    """A rough pose, and that of a box fitted to the points; and what each of them is worth."""
-    yield rough, 1.0
-    if not body.round:
-        yield fitted(body, rough, points), FITTED
 
 
 def _turned(thing: Solid, body: Body) -> Iterator[tuple[Body, Transform]]:
@@ -130,7 +118,7 @@ def _may_be(body: Body, extent: Array, thing: Solid) -> bool:
     That is no round thing's diameter: its side tells it, also where a half of it is hidden.
     """
     sizes = 2 * body.half
-    if (extent > sizes + (NEAR if body.round else AGREES)).any():
+    if (extent > sizes + NEAR).any():
         return False
     if body.round:
         wide = thing.size[0] if thing.has_axis else float(extent[:2].max())

@@ -12,7 +12,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 import pytest
-from momantu_skills.perception.learned.bodies import Body, asked_body, fitted
+from momantu_skills.perception.learned.bodies import Body, asked_body
 from momantu_skills.perception.learned.completing import completed
 from momantu_skills.perception.learned.detector import LearnedDetector
 from momantu_skills.perception.learned.fusing import Look
@@ -126,36 +126,6 @@ def test_a_box_goes_on_behind_what_hides_it(yaw: float, hidden: float) -> None:
     assert sorted(whole.size) == pytest.approx([0.06, 0.08, 0.20])
     assert np.linalg.norm(whole.frame_from_object.position - box.pose.position) < 0.012
     assert 0.5 < worth < 0.86
-
-
-def test_a_box_goes_on_above_what_is_told_of_it() -> None:
-    asked = ObjectClass("box", width=0.06, depth=0.10, height=0.16)
-    box = Thing((0.10, 0.06, 0.16), (0.0, 0.1), 0.6)
-    solid, look = shown_as("box", {"box": 0.9}, box)
-    low, near = solid.points[:, 2] < 0.10, (look.points - box.pose.position)[:, :2]
-    rest = (np.abs(near) > (0.12, 0.5)).any(axis=1) | (look.points[:, 2] < 0.10)
-    part = replace(solid, points=solid.points[low])
-    look = replace(look, points=look.points[rest])
-    result = completed(part, asked, USUAL["box"], [look], 0.0)
-    assert result is not None
-    assert np.linalg.norm(result[0].frame_from_object.position - box.pose.position) < 0.012
-
-
-def test_a_lower_box_above_which_the_wall_is_seen_is_not_the_asked_one() -> None:
-    asked = ObjectClass("box", width=0.06, depth=0.10, height=0.16)
-    assert found(asked, Thing((0.10, 0.06, 0.11), (0.0, 0.1))) is None
-
-
-def test_a_rough_pose_is_moved_onto_the_points() -> None:
-    box, draw = Thing((0.20, 0.06, 0.08), (0.02, 0.1), 0.3), seeded("rough")
-    body = Body(np.array(box.size) / 2, round=False, hollow=False, slender=False)
-    shown = box.surface()[::100]
-    for _ in range(50):
-        x, y, turn = draw.uniform(-1.0, 1.0, 3) * (0.012, 0.012, 0.2)
-        rough = box.pose @ Transform.from_rpy((x, y, 0.0), (0.0, 0.0, turn))
-        pose = fitted(body, rough, shown)
-        assert np.linalg.norm(pose.position - box.pose.position) < 0.003
-        assert pose.angle_to(box.pose) < 0.03
 
 
 def test_a_shorter_box_that_is_seen_whole_is_not_the_asked_one() -> None:
