@@ -12,6 +12,7 @@ from momantu_worlds.scenes.arrange.layout import Layout
 from momantu_worlds.scenes.arrange.variation import vary
 from momantu_worlds.scenes.catalogue.objects import LYING_KINDS, OBJECT_KINDS, ObjectKind, Thing
 from momantu_worlds.scenes.file.objects import Item
+from momantu_worlds.scenes.file.references import dangling
 from momantu_worlds.scenes.file.world import WorldFile
 from momantu_worlds.scenes.geometry.bodies import Body
 from momantu_worlds.scenes.geometry.solids import PlacedBody
@@ -132,6 +133,9 @@ def test_a_mesh_as_an_object_is_refused_with_what_it_cannot_have(tin: Path) -> N
             world_with({"kind": "can", **wrong})
     with pytest.raises(WorldError, match=r"nowhere\.ply"):
         vary(world_with({"kind": "can", "mesh": str(tin.with_name("nowhere.ply"))}), 0)
+    [(place, message)] = dangling(world_with({"kind": "can", "mesh": "nowhere.ply"}))
+    assert place == ("item", "mesh", "file")
+    assert "there is no file 'nowhere.ply'" in message
 
 
 @pytest.mark.parametrize("kind", LYING_KINDS)

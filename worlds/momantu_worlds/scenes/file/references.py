@@ -9,7 +9,6 @@ from momantu_bt.descriptions.reading import KeyMessage
 from momantu_bt.formats.names import valid_names
 from momantu_bt.formats.places import KeyPath
 from momantu_bt.lazy import lazily
-from momantu_worlds.scenes.file.furniture import MeshUse
 from momantu_worlds.scenes.file.world import WorldFile
 
 with lazily():
@@ -166,7 +165,7 @@ def surface_names(world: WorldFile) -> tuple[str, ...]:
 
 
 def _files(world: WorldFile) -> Iterator[KeyMessage]:
-    for place, use in _meshes(world):
+    for place, use in world.mesh_uses():
         if not world.beside(use.file).is_file():
             yield (*place, "file"), f"there is no file {use.file!r} beside the world file"
     if world.site.map is not None and (wrong := _map_problem(world, world.site.map)):
@@ -204,14 +203,3 @@ def _map_problem(world: WorldFile, name: str) -> str | None:
         f"the map {name!r} has no free cell, so a robot cannot be anywhere on it; look at its "
         "picture, `negate`, `free_thresh` and `occupied_thresh`"
     )
-
-
-def _meshes(world: WorldFile) -> Iterator[tuple[KeyPath, MeshUse]]:
-    for section, pieces in (("tables", world.tables), ("furniture", world.furniture)):
-        for name, piece in pieces.items():
-            if piece.mesh is not None:
-                yield (section, name, "mesh"), piece.mesh
-    for name, body in world.bodies.items():
-        for number, part in enumerate(body.parts):
-            if part.mesh is not None:
-                yield ("bodies", name, "parts", number, "mesh"), part.mesh

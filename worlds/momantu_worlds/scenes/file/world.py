@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
@@ -10,6 +11,7 @@ from pydantic import Field, PrivateAttr
 
 from momantu_bt.descriptions.goal import GoalDemand, GoalDemands, demands
 from momantu_bt.formats.maps import picture_file
+from momantu_bt.formats.places import KeyPath
 from momantu_bt.geometry import Pose2D
 from momantu_worlds.scenes.file.actors import ActorNote
 from momantu_worlds.scenes.file.bodies import BodyNote
@@ -22,7 +24,7 @@ from momantu_worlds.scenes.file.building import (
     Room,
     Walls,
 )
-from momantu_worlds.scenes.file.furniture import Piece, Table
+from momantu_worlds.scenes.file.furniture import MeshUse, Piece, Table
 from momantu_worlds.scenes.file.objects import Distractors, Item, ObjectNote, Tag, TagNote
 from momantu_worlds.scenes.file.site import SiteNotes
 from momantu_worlds.scenes.file.values import Name, Part
@@ -78,11 +80,25 @@ class WorldFile(Part):
 
     def mesh_files(self) -> tuple[Path, ...]:
         """Every mesh file that it names, once."""
-        uses = [table.mesh for table in self.tables.values()]
-        uses += [piece.mesh for piece in self.furniture.values()]
-        uses += [part.mesh for body in self.bodies.values() for part in body.parts]
-        uses += [thing.mesh for thing in (self.item, *self.objects.values()) if thing is not None]
-        return tuple(dict.fromkeys(self.beside(use.file) for use in uses if use is not None))
+        return tuple(dict.fromkeys(self.beside(use.file) for _, use in self.mesh_uses()))
+
+    def mesh_uses(self) -> Iterator[tuple[KeyPath, MeshUse]]:
+        """Every mesh, with the keys under which it is written."""
+        if self.item is not None and self.item.mesh is not None:
+            yield ("item", "mesh"), self.item.mesh
+        sections: dict[str, Mapping[str, Table | Piece | ObjectNote]] = {
+            "tables": self.tables,
+            "furniture": self.furniture,
+            "objects": self.objects,
+        }
+        for section, notes in sections.items():
+            for name, note in notes.items():
+                if note.mesh is not None:
+                    yield (section, name, "mesh"), note.mesh
+        for name, body in self.bodies.items():
+            for number, part in enumerate(body.parts):
+                if part.mesh is not None:
+                    yield ("bodies", name, "parts", number, "mesh"), part.mesh
 
     def files(self) -> tuple[Path, ...]:
         """The world file itself and all files that it names: meshes, its own tags, its own map.
