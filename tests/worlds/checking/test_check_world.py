@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from momantu_worlds.checking.run import check_world
 from momantu_worlds.robots import fetch
+from momantu_worlds.scenes.arrange.mesh_files import MeshError
 from momantu_worlds.scenes.geometry.bodies import Episode
 from momantu_worlds.scenes.loading import draw_episode, world_path
 
@@ -54,6 +55,14 @@ def test_the_worst_episode_words_a_finding_and_one_that_cannot_be_is_told() -> N
     assert f"{100 * depth:.0f} cm inside wall_outer_west" in start.message
     assert found["no-episode"].seeds == (2,)
     assert "no free place to start" in found["no-episode"].message
+
+
+def test_a_mesh_that_cannot_be_read_is_no_lack_of_room() -> None:
+    def draw(seed: int) -> Episode:
+        raise MeshError("the mesh file tin.ply holds no triangles")
+
+    with pytest.raises(MeshError, match="no triangles"):
+        check_world(PATH, draw, fetch(), range(3))
 
 
 @pytest.mark.parametrize(

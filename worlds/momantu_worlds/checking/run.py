@@ -20,6 +20,7 @@ from momantu_worlds.checking.tags import tags
 from momantu_worlds.checking.upright import upright
 from momantu_worlds.checking.where import Where
 from momantu_worlds.checking.zones import zones
+from momantu_worlds.scenes.arrange.mesh_files import MeshError
 from momantu_worlds.scenes.geometry.bodies import Episode
 
 CHECKS: tuple[Callable[[Scenario], Iterable[FindingAtKeys]], ...] = (
@@ -48,7 +49,7 @@ def check_world(
     path: the world file. draw: gives the episode of a seed. begun: is told each seed first.
 
     Raises:
-        WorldError: the world file cannot be read.
+        WorldError: the world file, or a mesh that it names, cannot be read.
     """
     where, robot = Where(path), measured(description)
     remarks = []
@@ -63,6 +64,8 @@ def _of_seed(
 ) -> Iterator[FindingAtKeys]:
     try:
         episode = draw(seed)
+    except MeshError:
+        raise
     except WorldError as error:
         cure = "make room in the world, or let less of it vary"
         yield FindingAtKeys(

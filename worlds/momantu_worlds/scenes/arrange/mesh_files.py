@@ -33,6 +33,10 @@ Z_FROM_Y = np.array([(1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)])
 """Rotation from a mesh with y up to z up."""
 
 
+class MeshError(WorldError):
+    """A mesh file of a world cannot be used; the message says why."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshPiece:
     """One part of a mesh file with its own colour; texture: (h, w, 3) uint8 with uv (n, 2)."""
@@ -56,7 +60,7 @@ def mesh_parts(
     does. color: instead of its own.
 
     Raises:
-        WorldError: the file cannot be read, is too large, or holds no triangles.
+        MeshError: the file cannot be read, is too large, or holds no triangles.
     """
     return _parts(use, _state(file), standing, color)
 
@@ -146,9 +150,9 @@ def _state(file: Path) -> _State:
     try:
         stat = file.stat()
     except OSError as error:
-        raise WorldError(f"the mesh file {file} cannot be read: {error.strerror}") from error
+        raise MeshError(f"the mesh file {file} cannot be read: {error.strerror}") from error
     if stat.st_size > MOST_BYTES:
-        raise WorldError(f"the mesh file {file} has {stat.st_size} bytes; at most {MOST_BYTES}")
+        raise MeshError(f"the mesh file {file} has {stat.st_size} bytes; at most {MOST_BYTES}")
     return _State(file, stat.st_mtime_ns, stat.st_size)
 
 
@@ -161,14 +165,12 @@ def _read(state: _State) -> tuple[MeshPiece, ...]:
         pieces = tuple(_pieces(scene))
     except Exception as error:  # readers of a dozen formats, which raise what they like
         message = f"the mesh file {file} cannot be read: {type(error).__name__}: {error}"
-        raise WorldError(message) from error
+        raise MeshError(message) from error
     triangles = sum(len(piece.triangles) for piece in pieces)
     if triangles == 0:
-        raise WorldError(f"the mesh file {file} holds no triangles")
+        raise MeshError(f"the mesh file {file} holds no triangles")
     if triangles > MOST_TRIANGLES:
-        raise WorldError(
-            f"the mesh file {file} has {triangles} triangles; at most {MOST_TRIANGLES}"
-        )
+        raise MeshError(f"the mesh file {file} has {triangles} triangles; at most {MOST_TRIANGLES}")
     return pieces
 
 
