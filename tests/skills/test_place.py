@@ -61,6 +61,13 @@ def place(robot: Any, scene: Any, where: Any = None, top: Any = None, **more: An
     )
 
 
+def arm_is_ready(robot: Tabletop) -> bool:
+    """Whether the arm was taken to where it hides nothing."""
+    ready, state = robot.description.named_poses["ready"], robot.state()
+    arm = robot.description.groups["arm"].joints
+    return all(abs(state.position(name) - ready[name]) < 0.05 for name in arm if name in ready)
+
+
 @pytest.mark.parametrize("spot", [(0.65, -0.2), (0.8, 0.15)])
 def test_the_can_stands_on_the_spot(holding: Carrying, spot: tuple[float, float]) -> None:
     robot, scene = holding()
@@ -256,10 +263,7 @@ def test_an_arm_that_hides_the_spot_is_taken_away_before_the_can_is_called_lost(
     result = place(robot, scene, spots((0.7, 0.0)))
     assert result.status == "SUCCESS", result.explain()
     assert len(looked) == 2
-    ready = robot.description.named_poses["ready"]
-    state = robot.state()
-    arm = robot.description.groups["arm"].joints
-    assert all(abs(state.position(name) - ready[name]) < 0.05 for name in arm if name in ready)
+    assert arm_is_ready(robot)
 
 
 def test_where_a_thing_held_by_its_rim_stands_is_looked_at_once_more(
@@ -280,3 +284,4 @@ def test_where_a_thing_held_by_its_rim_stands_is_looked_at_once_more(
     claim = result.claim()
     assert isinstance(claim, SetDown)
     assert claim.odom_from_object == looked[-1] @ turned
+    assert arm_is_ready(robot)

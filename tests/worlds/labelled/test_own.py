@@ -12,7 +12,7 @@ from momantu_skills.perception.learned.detector import WEIGHTS, LearnedDetector
 from momantu_skills.perception.learned.weights import BUNDLED
 from momantu_worlds.labelled.heaps import resting
 from momantu_worlds.labelled.own import own_category
-from momantu_worlds.labelled.own_files import mesh_files
+from momantu_worlds.labelled.own_files import named_meshes
 from momantu_worlds.labelled.stock import Stock
 from momantu_worlds.labelled.studio import Studio
 
@@ -137,21 +137,21 @@ def test_each_mesh_may_have_a_folder_of_its_own(sprays: Path, tmp_path: Path) ->
         folder = tmp_path / "set" / f"thing_{number}" / "deep"
         folder.mkdir(parents=True)
         spray(130.0 + number).export(folder / "model.ply")
-    found = mesh_files(tmp_path / "set")
-    assert list(found) == ["thing_0", "thing_1", "thing_2"]
-    assert found["thing_1"] == tmp_path / "set" / "thing_1" / "deep" / "model.ply"
+    found = named_meshes(tmp_path / "set")
+    assert [name for name, _ in found] == [f"thing_{number}/deep/model" for number in range(3)]
+    assert found[1][1] == tmp_path / "set" / "thing_1" / "deep" / "model.ply"
     made = own_category("spray", tmp_path / "set", 0.001, testing=True)
-    assert [model.shape.family for model in made.testing] == ["thing_2"]
+    assert [model.shape.family for model in made.testing] == ["thing_2/deep/model"]
     spray(140.0).export(tmp_path / "set" / "thing_1" / "deep" / "collision.ply")
     with pytest.raises(InputError, match=r"thing_1 holds 2 meshes \(deep/collision.ply, .*pattern"):
-        mesh_files(tmp_path / "set")
-    assert mesh_files(tmp_path / "set" / "*" / "deep" / "model.ply") == found
+        named_meshes(tmp_path / "set")
+    assert named_meshes(tmp_path / "set" / "*" / "deep" / "model.ply") == found
 
 
 def test_a_pattern_that_matches_nothing_is_told(sprays: Path) -> None:
-    assert list(mesh_files(sprays / "*.stl")) == ["spray_1", "spray_4"]
+    assert [name for name, _ in named_meshes(sprays / "*.stl")] == ["spray_1", "spray_4"]
     with pytest.raises(InputError, match="matches no mesh"):
-        mesh_files(sprays / "*.blend")
+        named_meshes(sprays / "*.blend")
 
 
 def test_one_mesh_can_be_trained_on_but_not_tested(sprays: Path) -> None:

@@ -19,7 +19,7 @@ from momantu_bt.categories import USUAL, Symmetry
 from momantu_bt.errors import InputError
 from momantu_bt.geometry import Array, Transform
 from momantu_bt.world import seeded
-from momantu_worlds.labelled.own_files import mesh_files
+from momantu_worlds.labelled.own_files import named_meshes
 from momantu_worlds.labelled.shape import Draw, Shape, draw_color
 from momantu_worlds.scenes.arrange.mesh_files import mesh_parts
 from momantu_worlds.scenes.file.furniture import MeshUse
@@ -87,7 +87,7 @@ def own_category(
 ) -> OwnCategory:
     """The category of some meshes. scale: metres of a unit of the files. up: their axis.
 
-    meshes: a folder or a pattern; see `mesh_files`.
+    meshes: a folder or a pattern; see `named_meshes`.
 
     Raises:
         InputError: the name cannot be one, there are too few meshes, or one is too large.
@@ -98,14 +98,14 @@ def own_category(
             f"--category {name!r}; expected a word of small letters, digits and _ that is none of "
             f"{', '.join(USUAL)}, nothing, handle"
         )
-    files = mesh_files(meshes)
+    files = named_meshes(meshes)
     held = [number % HELD_BACK == HELD_BACK - 1 for number in range(len(files))]
     held[-1] |= len(files) > 1 and not any(held)
     if testing and not any(held):
         raise InputError(
             f"--meshes {meshes} holds one mesh, so none is kept for testing; add a second one"
         )
-    models = [_model(family, file, scale, up) for family, file in files.items()]
+    models = [_model(family, file, scale, up) for family, file in files]
     symmetry = Symmetry.ROUND if all(model.round for model in models) else Symmetry.NONE
     kept = tuple(model for model, is_held in zip(models, held, strict=True) if not is_held)
     tested = tuple(model for model, is_held in zip(models, held, strict=True) if is_held)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from momantu_bt.errors import InputError
 from momantu_worlds.scenes.file.furniture import MESH_ENDINGS
 
 
-def mesh_files(named: Path) -> dict[str, Path]:
-    """The meshes by name, in the order of their names.
+def named_meshes(named: Path) -> list[tuple[str, Path]]:
+    """The meshes with their names, in the order of their files.
 
     named: a folder of meshes; one of folders that hold a mesh each, as collections of scanned
-    things have it; or a pattern such as `ycb/*/textured.obj`. A mesh in a folder of its own has the
-    folder's name.
+    things have it; or a pattern such as `ycb/*/textured.obj`.
 
     Raises:
         InputError: there is no such folder or mesh, or a folder for one mesh holds several.
@@ -53,19 +53,10 @@ def _is_mesh(file: Path) -> bool:
     return file.is_file() and file.name.lower().endswith(MESH_ENDINGS)
 
 
-def _named(files: list[Path]) -> dict[str, Path]:
-    """Each by its own name if these differ, else by where they lie below what they share."""
-    stems = [file.stem for file in files]
-    if len(set(stems)) == len(files):
-        return dict(zip(stems, files, strict=True))
-    parts = [file.with_suffix("").parts for file in files]
-    differ = [
-        place for place in range(min(map(len, parts))) if len({each[place] for each in parts}) > 1
-    ]
-    names = ["_".join(each[place] for place in differ) for each in parts]
-    if len(set(names)) < len(files):
-        names = [str(file) for file in files]
-    return dict(zip(names, files, strict=True))
+def _named(files: list[Path]) -> list[tuple[str, Path]]:
+    """Each with where it lies below the folder that all share, without its ending."""
+    root = os.path.commonpath([file.parent for file in files])
+    return [(str(file.relative_to(root).with_suffix("")), file) for file in files]
 
 
 def _endings() -> str:

@@ -21,6 +21,7 @@ from momantu_worlds.scenes.referee.referee import Referee
 from momantu_bt.fault import Fault
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import GripperCommand, JointPositions
+from tests.worlds.origins import with_foot
 
 FETCH = fetch()
 ARM = FETCH.actuators["arm"].joints
@@ -43,16 +44,6 @@ def new_stage(seed: int, *, render: bool = False, foot: Transform | None = None)
         episode = dataclasses.replace(episode, bodies=bodies)
     simulator = Simulator(FETCH, episode, seed, render=render)
     return judged(simulator, episode, seed)
-
-
-def with_foot(body: Body, body_from_foot: Transform) -> Body:
-    """The same body with its origin elsewhere."""
-    parts = tuple(
-        dataclasses.replace(part, body_from_part=body_from_foot @ part.body_from_part)
-        for part in body.parts
-    )
-    at = body.map_from_body @ body_from_foot.inverse()
-    return dataclasses.replace(body, map_from_body=at, parts=parts, foot=body_from_foot)
 
 
 def judged(simulator: Simulator, episode, seed: int) -> Stage:

@@ -14,6 +14,7 @@ from momantu_worlds.scenes.referee.referee import Referee
 
 from momantu_bt.geometry import Array, Pose2D, Transform, quaternion_from_axis_angle
 from momantu_bt.world import Demanded, Site, Verdict
+from tests.worlds.origins import with_foot
 
 TABLE_TOP = 0.5
 HAND = Hand("gripper_link", frozenset({"left_finger", "right_finger"}), frozenset({"elbow"}))
@@ -103,18 +104,6 @@ def watch(truth: FakeTruth, seconds: float = 1.5) -> Referee:
     for tick in range(1, round(seconds / TICK) + 1):
         referee.observe(tick * TICK)
     return referee
-
-
-def other_origin(can: Body, body_from_foot: Transform) -> Body:
-    """The same thing with its origin elsewhere, as the files of others have it."""
-    foot_from_body = body_from_foot.inverse()
-    part = can.parts[0]
-    return replace(
-        can,
-        map_from_body=can.map_from_body @ foot_from_body,
-        parts=(replace(part, body_from_part=body_from_foot @ part.body_from_part),),
-        foot=body_from_foot,
-    )
 
 
 def tilted(pose: Transform, degrees: float) -> Transform:
@@ -379,7 +368,7 @@ def test_where_the_origin_of_an_item_is_changes_nothing(
     plain, truth = episode(), good_truth()
     plain = replace(plain, goals=(replace(GOAL, lying=lying),))
     elsewhere = Transform(foot)
-    bodies = tuple(other_origin(b, elsewhere) if b.name == "can" else b for b in plain.bodies)
+    bodies = tuple(with_foot(b, elsewhere) if b.name == "can" else b for b in plain.bodies)
     at = tilted(truth.poses["can"], 90.0 if lying else 3.0)
     x, y, z = at.position
     truth.poses["can"] = Transform((x, y, z + 0.035 if lying else z), at.quaternion)

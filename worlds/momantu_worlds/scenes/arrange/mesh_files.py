@@ -53,9 +53,6 @@ def mesh_parts(
 ) -> tuple[Part, ...]:
     """The parts that a mesh is made of.
 
-    standing: move it so that it stands on z = 0 with its centre above the origin, like furniture.
-    color: replaces its own colour.
-
     standing: it is moved so that it stands on z = 0 with its middle above the origin, as furniture
     does. color: instead of its own.
 

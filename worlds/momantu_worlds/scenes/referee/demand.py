@@ -51,33 +51,34 @@ class ItemDemand:
         """The numbers that are judged at `now`, s. gripper: its link; None without a hand."""
         goal, truth = self.goal, self._truth
         placed = PlacedBody(self._body, truth.pose(goal.item))
-        pose = self._body.foot_at(placed.pose)
+        foot = self._body.foot_at(placed.pose)
         support = truth.pose(goal.support)
-        middle = placed.centre if goal.lying else pose.position
+        middle = placed.centre if goal.lying else foot.position
         away = 0.0
         if goal.marker is not None:
             to_marker = truth.pose(goal.marker).position - middle
             away = float(np.hypot(to_marker[0], to_marker[1]))
-        margin, gap = self._resting(placed, support)
+        margin, gap = self._resting(placed, foot, support)
         return {
-            "tilt": abs(math.pi / 2 - tilt(pose)) if goal.lying else tilt(pose),
+            "tilt": abs(math.pi / 2 - tilt(foot)) if goal.lying else tilt(foot),
             "distance": away,
             "margin": margin,
             "gap": gap,
             "still": now - self._rest_since,
             "gripper": (
-                math.inf if gripper is None else self._item.distance(pose, truth.link(gripper))
+                math.inf if gripper is None else self._item.distance(foot, truth.link(gripper))
             ),
         }
 
-    def _resting(self, placed: PlacedBody, support: Transform) -> tuple[float, float]:
+    def _resting(
+        self, placed: PlacedBody, foot: Transform, support: Transform
+    ) -> tuple[float, float]:
         """How far the item is within the nearest edge, and how far it is above the top, m.
 
         One that is to stand is judged by the circle and the height of its foot, one that is to lie
-        by all of its points. support: pose of the supporting body.
+        by all of its points. foot, support: poses of its foot and of the supporting body.
         """
         if not self.goal.lying:
-            foot = self._body.foot_at(placed.pose)
             within = self._support.margin(support, foot) - self._item.radius
             return within, self._support.height_above(support, foot)
         points = [Transform(p) for solid in placed.solids for p in solid.vertices]
