@@ -24,6 +24,7 @@ from momantu_skills.navigation.drive.until import until
 from momantu_skills.navigation.drive.vehicle import Vehicle
 from momantu_skills.navigation.localize.confidence import estimate
 from momantu_skills.navigation.map.own import OwnMap
+from momantu_skills.navigation.plan.clear_view import in_view
 from momantu_skills.navigation.plan.goals import Stand, before_surface, surface_at, within_reach
 
 with lazily():
@@ -224,8 +225,15 @@ class Navigate(Skill):
         moves = offers(self.localization, OwnMap)  # then names move with the map
         if named in surfaces:
             base, told = vehicle.pose(), surfaces[named]
+
+            def before() -> list[Stand]:
+                surface = surfaces[named] if moves else told
+                middle = surface.map_from_surface
+                stands = before_surface(surface, working, base)
+                return in_view(stands, (middle.x, middle.y), surface, vehicle.costmap.grid)
+
             return trip.Destination(
-                lambda: before_surface(surfaces[named] if moves else told, working, base),
+                before,
                 tolerance,
                 side=self.side,
                 thing=(lambda: surfaces[named].map_from_surface) if moves else None,
@@ -235,7 +243,11 @@ class Navigate(Skill):
             point = self._point
 
             def reachable() -> list[Stand]:
-                return within_reach(point(target), surfaces.values(), vehicle.pose(), working)
+                there, surface = point(target), self._surface()
+                stands = within_reach(there, surfaces.values(), vehicle.pose(), working)
+                if surface is None:
+                    return stands
+                return in_view(stands, there, surface, vehicle.costmap.grid)
 
             return trip.Destination(reachable, tolerance, side=self.side, in_odom=True)
         pose = self.goal if self.goal is not None else self.site.places[named]

@@ -5,14 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from momantu_bt.geometry import Pose2D, wrap_angle
-from momantu_bt.redrawing import DRAWN
 from momantu_bt.world import Surface
-from momantu_skills.navigation.map.believed import raster
 from momantu_skills.navigation.map.costmap import Costmap
+from momantu_skills.navigation.plan.clear_view import beside, is_hidden
 from momantu_skills.navigation.plan.goals import Stand
 
 BEARINGS = 12
@@ -38,7 +34,7 @@ def lookouts(
     Walls and furniture on the map hide the point; what is drawn of `surface` does not, as it may
     stand elsewhere. base: a shorter drive is better. before: from where somebody looked already.
     """
-    hiding = costmap.known & ~raster(costmap.grid).on(surface, DRAWN)
+    hiding = beside(surface, costmap.known, costmap.grid)
     x, y = middle
     used = [math.atan2(pose.y - y, pose.x - x) for pose in before]
     stands: list[Stand] = []
@@ -52,18 +48,7 @@ def lookouts(
                 y + off * math.sin(bearing),
                 wrap_angle(bearing + math.pi),
             )
-            if not _hidden(costmap, hiding, pose, middle):
+            if not is_hidden(costmap.grid, hiding, pose, middle):
                 cost = pose.distance_to(base) + farther + (SEEN_FROM if again else 0.0)
                 stands.append(Stand(pose, number, cost))
     return sorted(stands, key=lambda stand: stand.cost)
-
-
-def _hidden(
-    costmap: Costmap, hiding: NDArray[np.bool_], pose: Pose2D, middle: tuple[float, float]
-) -> bool:
-    """Whether something on the map stands between a pose and a point, or the pose is off it."""
-    steps = max(2, math.ceil(math.dist((pose.x, pose.y), middle) / costmap.grid.resolution) + 1)
-    for x, y in np.linspace((pose.x, pose.y), middle, steps):
-        if not costmap.grid.contains(x, y) or hiding[costmap.grid.index(x, y)]:
-            return True
-    return False
