@@ -15,13 +15,20 @@ from momantu_bt.geometry import Array, Pose2D
 from momantu_bt.lazy import lazily
 from momantu_bt.robot import Robot, read_laser
 from momantu_bt.service import Service, ServiceContext
-from momantu_skills.navigation.config import NavigationConfig
+from momantu_skills.navigation.config import LocalizationConfig, NavigationConfig
 from momantu_skills.navigation.localize.confidence import published
 from momantu_skills.navigation.map.sensing import Rays
 from momantu_skills.navigation.matching.poses import ORIGIN
 
 with lazily():
-    from momantu_skills.mapping import anchors, extending, fitting, growing_plan, sightings
+    from momantu_skills.mapping import (
+        anchors,
+        extending,
+        fitting,
+        growing_plan,
+        sightings,
+        uncertainty,
+    )
     from momantu_skills.mapping import survey as surveys
     from momantu_skills.mapping.logs import log
     from momantu_skills.navigation.control import footprint
@@ -81,6 +88,10 @@ class MappingService(Service):
         self._config = configured(
             NavigationConfig, context.site.services.get("navigate", {}), "navigate"
         )
+        told = context.site.services.get("localization", {})
+        self._uncertainty = uncertainty.Uncertainty(
+            configured(LocalizationConfig, told, "localization")
+        )
         self._frames = context.frames
         self._laser = context.description.laser()[0]
         self._base = context.description.base_frame
@@ -95,7 +106,6 @@ class MappingService(Service):
         self._odom_from_base: Pose2D | None = None
         self._odometry = ORIGIN
         self._estimate = context.site.start
-        self._covariance = np.zeros((3, 3))
         self._score = self._fit = 1.0
         self._newest: tuple[int, Pose2D] | None = None
         self._due_at = -math.inf
@@ -148,11 +158,13 @@ class MappingService(Service):
                 raise
             self.survey = surveys.Survey.going_on(self.earlier.known, self.begun)
         revision = self.survey.mapper.revision
+        before = odometry if self.survey.begins else self.survey.used[-1].odom_from_base
         tracked = self.survey.add(log.LoggedScan(scan.stamp, odometry, rays))
         if self.survey.mapper.revision != revision:
             self.anchors.move(self.survey.mapper.poses)
         if tracked is not None:
-            self._score, self._covariance = tracked.score, tracked.covariance
+            self._score = tracked.score
+            self._uncertainty.follow(before.inverse() @ odometry, tracked)
         if self._costmap is not None:
             at = self.survey.pose(odometry)
             self._fit = fitting.fit(self._costmap.grid, self._surfaces, at, rays)
@@ -199,7 +211,7 @@ class MappingService(Service):
         """(3, 3) of x, y, yaw in m2, m rad, rad2, relative to the map around the robot."""
         turn, yaw = np.eye(3), self._estimate.yaw
         turn[:2, :2] = [[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]]
-        return np.asarray(turn @ self._covariance @ turn.T)
+        return np.asarray(turn @ self._uncertainty.covariance @ turn.T)
 
     @property
     def quality(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, TypeAlias
 
 from pydantic import AfterValidator, Field
@@ -15,12 +16,15 @@ from momantu_bt.descriptions.quantities import (
     Time,
 )
 from momantu_bt.descriptions.tunables import Tunables
+from momantu_bt.geometry import Pose2D
 
 Count: TypeAlias = Annotated[int, Field(ge=1)]
 Share: TypeAlias = Annotated[float, Field(ge=0.0, le=1.0)]
 Weight: TypeAlias = Annotated[float, Field(ge=0.0)]
 Spare: TypeAlias = Annotated[float, Measured("a length", ("m",), ge=0)]
 """A length that may be 0."""
+SLIP = 0.01
+"""Standard deviation of odometry's way, m per radian turned."""
 
 
 def _rising(counts: tuple[int, int]) -> tuple[int, int]:
@@ -91,6 +95,15 @@ class LocalizationConfig(Tunables):
     global_headings: Count = Field(
         default=72, description="headings that are tried at each of them"
     )
+
+    def odometry_deviation(self, motion: Pose2D) -> tuple[float, float, float]:
+        """Standard deviations of a step by odometry: ahead, to the left, m, and of the yaw, rad.
+
+        They grow with the way and the turn (the sampled odometry model, in one step).
+        """
+        way, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
+        along = self.translation_noise * way + SLIP * turn
+        return along, along / 2, self.rotation_noise * turn + self.turn_per_metre * way
 
 
 class CriticWeights(Tunables):

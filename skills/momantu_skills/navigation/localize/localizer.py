@@ -97,19 +97,13 @@ class Localizer:
         return np.concatenate([cells + offsets, yaw], axis=1)
 
     def move(self, delta: Pose2D) -> None:
-        """Move the particles by odometry's `delta`, in the base's frame before the motion.
-
-        The noise grows with the distance and the turn (the sampled odometry model, in one step).
-        """
+        """Move the particles by odometry's `delta`, in the base's frame before the motion."""
         if self._search is not None:
             self._search.move(delta)
             self.estimate = self.estimate @ delta
             return
-        config, count = self._config, len(self._poses)
-        way, turn = math.hypot(delta.x, delta.y), abs(delta.yaw)
-        along = config.translation_noise * way + 0.01 * turn
-        round_about = config.rotation_noise * turn + config.turn_per_metre * way
-        noise = self._random.standard_normal((count, 3)) * (along, along / 2, round_about)
+        spread = self._config.odometry_deviation(delta)
+        noise = self._random.standard_normal((len(self._poses), 3)) * spread
         yaw = self._poses[:, 2] + 0.5 * noise[:, 2]
         x, y = delta.x + noise[:, 0], delta.y + noise[:, 1]
         self._poses[:, 0] += np.cos(yaw) * x - np.sin(yaw) * y
