@@ -219,38 +219,45 @@ class Navigate(Skill):
         return float(there[0]), float(there[1])
 
     def _destination(self, vehicle: Vehicle, working: Working) -> trip.Destination:
+        if self.in_front_of in self.site.surfaces:
+            return self._before(str(self.in_front_of), vehicle, working)
+        if self.within_reach_of is not None:
+            return self._in_reach(self.within_reach_of, vehicle, working)
+        return self._at(vehicle)
+
+    def _before(self, named: str, vehicle: Vehicle, working: Working) -> trip.Destination:
+        """Before a surface, which moves with the map while that is made."""
+        surfaces, base = self.site.surfaces, vehicle.pose()
+        told, moves = surfaces[named], offers(self.localization, OwnMap)
+
+        def stands() -> list[Stand]:
+            surface = surfaces[named] if moves else told
+            middle = surface.map_from_surface
+            before = before_surface(surface, working, base)
+            return in_view(before, (middle.x, middle.y), surface, vehicle.costmap.grid)
+
+        return trip.Destination(
+            stands,
+            (self.tolerance, self.angle_tolerance),
+            side=self.side,
+            thing=(lambda: surfaces[named].map_from_surface) if moves else None,
+        )
+
+    def _in_reach(self, target: Pose, vehicle: Vehicle, working: Working) -> trip.Destination:
+        """Where the hand reaches a pose."""
+
+        def stands() -> list[Stand]:
+            point, surface = self._point(target), self._surface()
+            near = within_reach(point, self.site.surfaces.values(), vehicle.pose(), working)
+            return near if surface is None else in_view(near, point, surface, vehicle.costmap.grid)
+
         tolerance = (self.tolerance, self.angle_tolerance)
-        surfaces = self.site.surfaces
-        named = str(self.in_front_of)
-        moves = offers(self.localization, OwnMap)  # then names move with the map
-        if named in surfaces:
-            base, told = vehicle.pose(), surfaces[named]
+        return trip.Destination(stands, tolerance, side=self.side, in_odom=True)
 
-            def before() -> list[Stand]:
-                surface = surfaces[named] if moves else told
-                middle = surface.map_from_surface
-                stands = before_surface(surface, working, base)
-                return in_view(stands, (middle.x, middle.y), surface, vehicle.costmap.grid)
-
-            return trip.Destination(
-                before,
-                tolerance,
-                side=self.side,
-                thing=(lambda: surfaces[named].map_from_surface) if moves else None,
-            )
-        target = self.within_reach_of
-        if target is not None:
-            point = self._point
-
-            def reachable() -> list[Stand]:
-                there, surface = point(target), self._surface()
-                stands = within_reach(there, surfaces.values(), vehicle.pose(), working)
-                if surface is None:
-                    return stands
-                return in_view(stands, there, surface, vehicle.costmap.grid)
-
-            return trip.Destination(reachable, tolerance, side=self.side, in_odom=True)
-        pose = self.goal if self.goal is not None else self.site.places[named]
+    def _at(self, vehicle: Vehicle) -> trip.Destination:
+        """At a pose, or at a place, which moves with the map while that is made."""
+        places, named = self.site.places, str(self.in_front_of)
+        pose = self.goal if self.goal is not None else places[named]
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw))) or not (
             vehicle.costmap.grid.contains(pose.x, pose.y)
         ):
@@ -262,8 +269,8 @@ class Navigate(Skill):
                 f"({pose.x}, {pose.y}) is not {where} spans x {x:.1f} to {x + width:.1f} and "
                 f"y {y:.1f} to {y + height:.1f} m",
             )
+        tolerance = (self.tolerance, self.angle_tolerance)
         if self.goal is None:
-            places = self.site.places
             return trip.Destination(
                 lambda: [Stand(places[named], 0, 0.0)], tolerance, thing=lambda: places[named]
             )

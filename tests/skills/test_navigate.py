@@ -17,6 +17,7 @@ from momantu_bt.running.told import Told
 from momantu_bt.service import HeldObject
 from momantu_bt.testing import ScriptedRobot, ScriptedWorld, small_robot
 from momantu_bt.testing.skill_run import SkillResult, run_skill
+from momantu_bt.world import Surface
 from tests.skills.scenery.flat import Flat, FlatSceneOf
 from tests.skills.scenery.table import SceneOf
 
@@ -135,6 +136,21 @@ def test_side_is_another_stand_that_looks_at_the_same(flat: Flat, drive: Drive) 
     assert result.status == "SUCCESS", result.explain()
     assert world.robot.truth.distance_to(FRONT) > 0.3
     middle = world.robot.truth.inverse() @ Pose2D(3.9, 0.2, 0.0)
+    assert abs(math.atan2(middle.y, middle.x)) < 0.12
+
+
+@pytest.mark.parametrize("side", range(4))
+def test_no_side_of_a_surface_is_looked_at_through_a_wall(
+    flat: Flat, drive: Drive, side: int
+) -> None:
+    """The side that comes first, and is nearest to the robot, lies in the other room."""
+    world = flat()
+    bench = Surface(Pose2D(1.7, -1.2, 0.0), (0.7, 0.8), 0.7, (math.pi, 0.0, math.pi / 2))
+    world.site = replace(world.site, surfaces={**world.site.surfaces, "bench": bench})
+    result = drive(world, in_front_of="bench", side=side)
+    assert result.status == "SUCCESS", result.explain()
+    assert world.robot.truth.x > 1.3
+    middle = world.robot.truth.inverse() @ bench.map_from_surface
     assert abs(math.atan2(middle.y, middle.x)) < 0.12
 
 
