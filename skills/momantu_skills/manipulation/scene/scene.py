@@ -41,7 +41,6 @@ from momantu_skills.manipulation.scene.surroundings import (
     within,
 )
 from momantu_skills.manipulation.scene.swept import swept
-from momantu_skills.navigation.control.guard import HARD_MARGIN
 from momantu_skills.perception.camera.cloud import points_from_depth
 from momantu_skills.perception.geometry.rows import unique_rows
 
@@ -267,7 +266,8 @@ class Scene:
     def _tall_near(self, state: RobotState, reach: float) -> tuple[Array, float]:
         """Points (n, 2), base frame, of what the maps know near, and their radius.
 
-        With the guard's margin they reach to where the map draws them.
+        They reach to where the map draws them. A wall may end up to half a cell beyond, and the
+        base may be some centimetres off: the guard's margin is left for that.
         """
         if self.columns is None or self.odom_from_map is None:
             return np.empty((0, 2)), 0.0
@@ -275,7 +275,7 @@ class Scene:
         x, y, _ = map_from_base.position
         tall = self.columns.near(float(x), float(y), reach)
         flat = map_from_base.inverse().apply(np.column_stack([tall, np.zeros(len(tall))]))
-        return flat[:, :2], max(0.0, self.columns.edge / 2 - HARD_MARGIN)
+        return flat[:, :2], self.columns.edge / 2
 
     def not_free(self, state: RobotState, columns: Array) -> Array:
         """See `BodyScene.not_free`."""

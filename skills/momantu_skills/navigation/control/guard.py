@@ -16,8 +16,8 @@ HARD_MARGIN = 0.02
 """Least distance between the footprint and any hit of the newest scan, m."""
 NEAR = 1.6
 """Hits farther away than this, m, cannot be reached before the next scan."""
-NOISE = 0.002
-"""How much nearer a hit inside the margin may come, m: tolerance for rounding errors."""
+ROUNDING = 1e-6
+"""How much nearer than stopping a command may bring a hit that is inside the margin, m."""
 TOGETHER = 0.3
 """Distance within which columns belong together, m."""
 DEEPEST = -0.01
@@ -25,6 +25,8 @@ DEEPEST = -0.01
 was drawn too narrow."""
 STEP = 0.05
 """Time step of the prediction, s."""
+LONGEST = 3.0
+"""How far it looks ahead at most, s."""
 
 
 def safe_share(
@@ -40,8 +42,9 @@ def safe_share(
     (m, 3), or (m, 5) with the lowest and highest point of each. hits: points (n, 2), or columns
     (n, 5) with the lowest and highest point of each, and its radius; all in the base frame, m. What
     has no heights is met at any. A hit that is inside the margin already does not forbid motion:
-    only commands that bring it nearer are refused. Columns belong together: what stands beside one
-    that is inside the margin may come as near, as on a drive along a wall, but not into a contact.
+    only commands that bring it nearer than stopping are refused. Columns belong together: what
+    stands beside one that is inside the margin may come as near, as on a drive along a wall, but
+    not into a contact.
     """
     near = hits[np.hypot(hits[:, 0], hits[:, 1]) < NEAR]
     together = TOGETHER if near.shape[1] == 5 else 0.0
@@ -59,22 +62,40 @@ def safe_share(
 
 @numba.njit(cache=True)
 def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array, together: float) -> bool:
-    now = np.empty(hits.shape[0])
+    stopping = wanted.copy()
+    stopping[:3] = 0.0
+    stop, motion = _motion(stopping, bounds), _motion(wanted, bounds)
+    least = np.full(hits.shape[0], HARD_MARGIN)
     for j in range(hits.shape[0]):
-        now[j] = min(HARD_MARGIN, _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) - NOISE)
-    allowed = now.copy()
+        if _away(0.0, 0.0, 1.0, 0.0, discs, hits[j]) < HARD_MARGIN:
+            least[j] = _nearest(stop, discs, hits[j], -np.inf) - ROUNDING
+    allowed = least.copy()
     for i in range(hits.shape[0]):
-        if now[i] == HARD_MARGIN:
+        if least[i] == HARD_MARGIN:
             continue
         for j in range(hits.shape[0]):
             if math.hypot(hits[i, 0] - hits[j, 0], hits[i, 1] - hits[j, 1]) < together:
-                allowed[j] = min(allowed[j], max(now[i], DEEPEST))
+                allowed[j] = min(allowed[j], max(least[i], DEEPEST))
+    for j in range(hits.shape[0]):
+        if _nearest(motion, discs, hits[j], allowed[j]) < allowed[j]:
+            return False
+    return True
+
+
+@numba.njit(cache=True)
+def _motion(wanted: Array, bounds: Array) -> Array:
+    """Poses (n, 4), as x, y, m, and cosine and sine of the yaw, until the base has stopped.
+
+    wanted: (m/s ahead, rad/s, m/s to the left), commanded, then measured. bounds: m/s2, rad/s2.
+    """
+    poses = np.empty((math.ceil(LONGEST / STEP) + 1, 4))
     x = y = yaw = 0.0
     v = wanted[3]
     w = wanted[4]
     u = wanted[5]
     t = 0.0
-    while t < 3.0:
+    count = 0
+    while t < LONGEST:
         to_v = wanted[0] if t < REACTION else 0.0
         to_w = wanted[1] if t < REACTION else 0.0
         to_u = wanted[2] if t < REACTION else 0.0
@@ -85,14 +106,27 @@ def _clear(wanted: Array, bounds: Array, discs: Array, hits: Array, together: fl
         x += v * math.cos(yaw) * STEP - u * math.sin(yaw) * STEP
         y += v * math.sin(yaw) * STEP + u * math.cos(yaw) * STEP
         t += STEP
-        c = math.cos(yaw)
-        s = math.sin(yaw)
-        for j in range(hits.shape[0]):
-            if _away(x, y, c, s, discs, hits[j]) < allowed[j]:
-                return False
+        poses[count, 0] = x
+        poses[count, 1] = y
+        poses[count, 2] = math.cos(yaw)
+        poses[count, 3] = math.sin(yaw)
+        count += 1
         if t > REACTION and abs(v) < 1e-9 and abs(w) < 1e-9 and abs(u) < 1e-9:
             break
-    return True
+    return poses[:count]
+
+
+@numba.njit(cache=True)
+def _nearest(motion: Array, discs: Array, hit: Array, enough: float) -> float:
+    """Return the least distance from a hit to the discs on a motion, or the first below enough."""
+    least = np.inf
+    for i in range(motion.shape[0]):
+        away = _away(motion[i, 0], motion[i, 1], motion[i, 2], motion[i, 3], discs, hit)
+        if away < least:
+            least = away
+            if least < enough:
+                break
+    return least
 
 
 @numba.njit(cache=True)
