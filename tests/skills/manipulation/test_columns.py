@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from momantu_skills.manipulation.config import SceneConfig
 from momantu_skills.manipulation.scene.columns import WALL, Columns
+from momantu_skills.manipulation.scene.scene import Scene
 from momantu_skills.manipulation.scene.surroundings import SeenSpace
+from momantu_worlds.robots import fetch
 
 from momantu_bt.geometry import Pose2D, Transform
 from momantu_bt.messages import CameraImage
 from momantu_bt.world import Site, Surface
 from tests.skills.scenery.flat import Box, write_map
+from tests.skills.scenery.table import Tabletop
 
 SPAN = (-1.0, -1.0, 3.0, 3.0)
 WALLS: tuple[Box, ...] = ((2.0, -1.0, 2.15, 3.0), (-1.0, 2.0, 3.0, 2.15))
@@ -70,6 +75,18 @@ def test_as_obstacles_they_stand_where_the_map_has_them(
     assert own == pytest.approx(np.unique(np.round(columns.near(1.2, 0.5, 1.4), 6), axis=0))
     assert there[:, 2].min() == pytest.approx(0.025)
     assert there[:, 2].max() == pytest.approx(WALL - 0.025)
+
+
+def test_what_the_base_keeps_clear_of_reaches_as_far_as_the_map_draws_it(tmp_path: Path) -> None:
+    scene = Scene(fetch(), SceneConfig())
+    scene.columns, scene.odom_from_map = Columns(site(tmp_path)), Pose2D(2.0, 1.0, 0.3).transform()
+    map_from_base = Pose2D(1.2, 0.5, 2.0).transform()
+    here = replace(Tabletop().state(), odom_from_base=scene.odom_from_map @ map_from_base)
+    found = scene.solids(here, np.empty((0, 2)), 1.4)
+    there = map_from_base.apply(np.column_stack([found[:, :2], np.zeros(len(found))]))[:, :2]
+    solid = found[:, 4] > 0.0
+    assert there[solid] == pytest.approx(scene.columns.near(1.2, 0.5, 1.4))
+    assert found[solid, 4] == pytest.approx(scene.columns.edge / 2)
 
 
 def looks_over(depth: float) -> SeenSpace:

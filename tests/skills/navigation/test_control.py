@@ -1,6 +1,7 @@
 """The local controller, the approach and the guard: driven in closed loop on a perfect unicycle."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -47,6 +48,11 @@ class _Unicycle:
             self.v += float(np.clip(command[0] - self.v, -1.0 * dt, 1.0 * dt))
             self.w += float(np.clip(command[1] - self.w, -3.0 * dt, 3.0 * dt))
             self.pose = self.pose @ Pose2D(self.v * dt, 0.0, self.w * dt)
+
+
+def _seen(base: _Unicycle, point: Sequence[float]) -> tuple[float, float]:
+    seen = base.pose.inverse() @ Pose2D(float(point[0]), float(point[1]), 0.0)
+    return seen.x, seen.y
 
 
 def _drive(
@@ -158,8 +164,7 @@ def test_what_the_guard_lets_through_can_still_stop(
     base.drive((v * share, w * share))
     for _ in range(15):
         base.drive((0.0, 0.0))
-    seen = base.pose.inverse() @ Pose2D(float(point[0, 0]), float(point[0, 1]), 0.0)
-    assert math.hypot(seen.x, seen.y) > 0.3 - 0.005 or share == 0.0
+    assert math.hypot(*_seen(base, point[0])) > 0.3 - 0.005 or share == 0.0
 
 
 @pytest.mark.parametrize(
@@ -192,6 +197,32 @@ def test_backing_away_from_a_touch_is_allowed() -> None:
     touching = np.array([[0.29, 0.0]])
     assert safe_share((-0.2, 0.0, 0.0), REST, LIMITS, DISC, touching) == 1.0
     assert safe_share((0.2, 0.0, 0.0), REST, LIMITS, DISC, touching) == 0.0
+
+
+CLOSE = st.tuples(st.floats(0.28, 0.318), st.floats(-math.pi, math.pi))
+
+
+@given(CLOSE, st.floats(-0.3, 0.3), st.floats(-1.0, 1.0))
+def test_what_is_inside_the_margin_never_comes_nearer(
+    hit: tuple[float, float], v: float, w: float
+) -> None:
+    base = _Unicycle(Pose2D(0.0, 0.0, 0.0))
+    point = np.array([[hit[0] * math.cos(hit[1]), hit[0] * math.sin(hit[1])]])
+    for _ in range(20):
+        seen = np.array([_seen(base, point[0])])
+        share = safe_share((v, w, 0.0), (base.v, base.w, 0.0), LIMITS, DISC, seen)
+        base.drive((v * share, w * share))
+    assert math.hypot(*_seen(base, point[0])) > hit[0] - 1e-3
+
+
+@pytest.mark.parametrize("creep", [0.001, 0.004, 0.01])
+def test_not_even_creeping_is_allowed_inside_the_margin(creep: float) -> None:
+    assert safe_share((creep, 0.0, 0.0), REST, LIMITS, DISC, np.array([[0.315, 0.0]])) == 0.0
+
+
+def test_a_base_that_rolls_towards_a_hit_may_turn_round() -> None:
+    rolling = (0.1, 0.0, 0.0)
+    assert safe_share((-0.2, 0.0, 0.0), rolling, LIMITS, DISC, np.array([[0.315, 0.0]])) == 1.0
 
 
 def test_the_approach_keeps_a_slow_base_slow() -> None:
