@@ -125,6 +125,35 @@ def test_low_things_are_laid_into_another_costmap() -> None:
     assert len(costmap.low_things()) == 1
 
 
+@pytest.mark.parametrize(
+    ("met", "still", "remains"),
+    [(True, False, False), (True, True, True), (False, False, True)],
+    ids=["somebody has gone", "a leg beside it is still met", "a board that no beam meets"],
+)
+def test_what_laser_and_pictures_showed_goes_when_the_laser_meets_nothing(
+    met: bool, still: bool, remains: bool
+) -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    leg, board = 0.15, np.array([[1.02, 0.02, 0.7]])
+    if met:
+        costmap.see_laser(pose, _rays(leg, 1.0))
+    costmap.see_depth(board.repeat(5, axis=0), np.zeros((0, 2)), 0.3)
+    for _ in range(SURE):
+        costmap.see_laser(pose, _rays(0.02, 2.5))
+        costmap.see_laser(pose, _rays(leg, 1.0 if still else 2.5, hit=met))
+    costmap.refresh()
+    assert (costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0) is remains
+
+
+def test_low_things_beside_somebody_stay_when_that_one_goes() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    costmap.see_laser(pose, _rays(0.02, 1.1))
+    costmap.see_depth(np.array([[1.02, 0.02, 0.1]]).repeat(5, axis=0), np.zeros((0, 2)), 0.3)
+    for _ in range(2 * SURE):
+        costmap.see_laser(pose, _rays(0.02, 2.5))
+    assert len(costmap.low_things()) == 1
+
+
 def test_points_off_the_map_are_left_out() -> None:
     costmap = _costmap()
     before = costmap.field.copy()

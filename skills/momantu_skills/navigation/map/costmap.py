@@ -7,6 +7,7 @@ import math
 import numba
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from momantu_bt.formats.maps import FREE, OCCUPIED, UNKNOWN
 from momantu_bt.geometry import Array, Pose2D
@@ -27,8 +28,13 @@ RANGE_DOUBT = 0.02
 """Heading error of the estimate, rad: hits this far off the map's walls are attributed to it."""
 DEPTH_HITS = 3
 """Depth pixels that a cell needs to be occupied: single ones lie between near and far edges."""
-LOW, TALL = 1, 2
-"""What a cell of the depth layer shows: something the laser looks over, or that it sees too."""
+LOW, TALL, MET = 1, 2, 3
+"""What a cell of the depth layer shows: something the laser looks over; something that is taller;
+something taller beside which the laser met something. The latter begins at `MET + SURE`, and each
+beam that later passes through the cell subtracts one."""
+MET_WITHIN, GONE_WITHIN = 0.25, 0.35
+"""Where the laser met something within this distance of a cell, it is the same thing; when it meets
+nothing within the other, m, the thing has gone. A person's legs lie that far inside the arms."""
 
 
 class Costmap:
@@ -88,7 +94,7 @@ class Costmap:
         new_from_old: how the map has moved where the robot is. What the laser saw is kept as long
         as neither that nor the raster changes; the map soon knows it too.
         """
-        marked = [(value, self._marked(value)) for value in (LOW, TALL)]
+        marked = [(value, self._marked(value)) for value in np.unique(self._depth) if value]
         same = grid.cells.shape == self.grid.cells.shape and grid.origin == self.grid.origin
         laser = self._laser
         self._read(grid)
@@ -141,9 +147,13 @@ class Costmap:
         self.refresh()
 
     def see_laser(self, map_from_base: Pose2D, rays: Rays) -> None:
-        """Mark the hits of a scan and clear the cells that its beams passed through."""
+        """Mark the hits of a scan and clear the cells that its beams passed through.
+
+        What pictures showed of something that the laser met, too, is cleared with it.
+        """
         _trace(
             self._laser,
+            self._depth,
             self._from_known,
             self.frame,
             np.array([map_from_base.x, map_from_base.y, map_from_base.yaw], dtype=np.float64),
@@ -154,6 +164,19 @@ class Costmap:
             self._config.laser_reach,
             self._config.known_reach,
         )
+        self._clear_gone()
+
+    def _clear_gone(self) -> None:
+        """Clear what pictures showed where the laser met something, and meets nothing any more."""
+        passed = np.argwhere(self._depth == MET)
+        if not len(passed):
+            return
+        passed = passed[self._from_known[tuple(passed.T)] > GONE_WITHIN]
+        met = np.argwhere(self._laser > 0)
+        if len(passed) and len(met):
+            off, _ = cKDTree(met).query(passed)
+            passed = passed[off * self.frame[2] > GONE_WITHIN]
+        self._depth[tuple(passed.T)] = 0
 
     def forget(self, places: Array, radius: float) -> None:
         """Clear what was seen within `radius` m of points (n, 2): it moves, or has gone."""
@@ -180,7 +203,9 @@ class Costmap:
         tall = self._counts(obstacles[obstacles[:, 2] > laser, :2]) > 0
         self._depth[bare & ~taken] = 0
         taken &= self.mapped_field > self._config.known_reach
-        self._depth[taken] = np.where(tall[taken], TALL, LOW)
+        met = clearance(self._laser > 0, self.grid.resolution) <= MET_WITHIN
+        shown = np.where(tall & met, MET + SURE, np.where(tall, TALL, LOW))
+        self._depth[taken] = shown[taken]
 
     def low_things(self) -> Array:
         """Middles (n, 2) of the cells in which pictures show something below the laser's plane."""
@@ -262,6 +287,7 @@ def room(field: Field, frame: Array, discs: Array, x: float, y: float, yaw: floa
 @numba.njit(cache=True)
 def _trace(
     marks: NDArray[np.uint8],
+    shown: NDArray[np.uint8],
     from_known: Field,
     frame: Array,
     pose: Array,
@@ -288,8 +314,11 @@ def _trace(
             row = math.floor(y + dy * step)
             if not (0 <= row < rows and 0 <= column < columns):
                 break
-            if (row != last_row or column != last_column) and marks[row, column] > 0:
-                marks[row, column] -= 1
+            if row != last_row or column != last_column:
+                if marks[row, column] > 0:
+                    marks[row, column] -= 1
+                if shown[row, column] > MET:
+                    shown[row, column] -= 1
             last_row = row
             last_column = column
     for i in range(ranges.shape[0]):
