@@ -45,7 +45,7 @@ def find_loop(
 
     The search turns the newer submap about its middle.
     """
-    middle = Pose2D(float(newer.middle[0]), float(newer.middle[1]))
+    middle = _middle(newer)
     points = newer.points - newer.middle
     score, found = search.search(
         older.levels,
@@ -81,8 +81,11 @@ def find_loop(
 
 def distance(first: Submap, at: Pose2D, second: Submap, there: Pose2D) -> float:
     """Distance between the middles of two submaps at their poses of the map, m."""
-    a, b = at.apply(first.middle[None])[0], there.apply(second.middle[None])[0]
-    return float(math.hypot(a[0] - b[0], a[1] - b[1]))
+    return (at @ _middle(first)).distance_to(there @ _middle(second))
+
+
+def _middle(submap: Submap) -> Pose2D:
+    return Pose2D(float(submap.middle[0]), float(submap.middle[1]))
 
 
 def bears_out(other: Loop, loop: Loop, origins: Sequence[Pose2D]) -> bool:
