@@ -52,6 +52,8 @@ AWAY = 2.0
 """Distance of the point that the camera looks at, m."""
 TABLE = 0.6
 """Height of that point, m: a table's."""
+OVER = 0.2
+"""Height of the camera over a top from which on that shows well, m: lower, it is a line from afar."""
 LOOKS = 2
 """Fewest pictures of a top that is measured."""
 ROUNDS = 3
@@ -73,7 +75,7 @@ class DiscoverSurface(Skill):
     to all else that stands on its map, from place to place. A level top of the asked height and
     size is measured from near, and the robot stands before it in the end. Give it a name with
     `name_place`: the next call looks for another one. What was looked at is remembered for the rest
-    of the run.
+    of the run. The camera must be some way above the tops: raise it first if they are high.
     """
 
     lowest: float = In(0.3, unit="m", least=0.3, most=1.1, doc="least height of a top")
@@ -128,7 +130,7 @@ class DiscoverSurface(Skill):
                 continue
             view = yield from compute(partial(self._next, robot, base), CHOOSING)
             if view is None:
-                raise self._none_left()
+                raise self._none_left(robot)
             self.log(
                 f"{self.looked_share} % looked at; next ({view.pose.x:.2f}, {view.pose.y:.2f})"
             )
@@ -304,9 +306,16 @@ class DiscoverSurface(Skill):
         like = [top for top in found if sightings.same(top, seen)]
         return max(like, key=lambda top: top.area, default=None)
 
-    def _none_left(self) -> Failure:
+    def _none_left(self, robot: Robot) -> Failure:
         refused = self.mapping.sightings.refused
         left = f"; the base did not get to {len(self._done)} places" if self._done else ""
+        camera = self.frames.lookup(ODOM, robot.description.camera()[1].frame)
+        above = float(camera.position[2]) - OVER
+        if self.highest > above:
+            left += (
+                f"; tops above {above:.2f} m hardly show, as the camera is {above + OVER:.2f} m "
+                "high: raise it with reset_pose, and look again with `again: true`"
+            )
         return Failure(
             "NO_NEW_SURFACE",
             f"{self.looked_share} % of what stands on the map was looked at, from "

@@ -105,6 +105,15 @@ def test_what_is_too_low_too_high_or_too_narrow_is_none(look: Look) -> None:
     assert result.failure.data["refused"] == []
 
 
+@pytest.mark.parametrize(("highest", "said"), [(1.1, True), (0.8, False)])
+def test_tops_that_are_about_as_high_as_the_camera_are_told_of(
+    look: Look, highest: float, said: bool
+) -> None:
+    result, robot, _ = look([], [], highest=highest)
+    assert result.code == "NO_NEW_SURFACE", result.explain()
+    assert ("raise it with reset_pose" in result.failure.message) is said
+
+
 def test_one_that_has_a_name_is_not_found_again(look: Look) -> None:
     bench = Surface(Pose2D(*BENCH), SIZE, HEIGHT, (0.0,))
     result, _, mapping = look([outline(*BENCH)], [board(*BENCH)], {"bench": bench})
