@@ -53,7 +53,7 @@ AWAY = 2.0
 TABLE = 0.6
 """Height of that point, m: a table's."""
 OVER = 0.2
-"""Height of the camera over a top from which on that shows well, m: lower, it is a line from afar."""
+"""Least height of the camera over a top that shows well, m: from lower it is a line from afar."""
 LOOKS = 2
 """Fewest pictures of a top that is measured."""
 ROUNDS = 3

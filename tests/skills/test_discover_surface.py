@@ -109,7 +109,7 @@ def test_what_is_too_low_too_high_or_too_narrow_is_none(look: Look) -> None:
 def test_tops_that_are_about_as_high_as_the_camera_are_told_of(
     look: Look, highest: float, said: bool
 ) -> None:
-    result, robot, _ = look([], [], highest=highest)
+    result, _, _ = look([], [], highest=highest)
     assert result.code == "NO_NEW_SURFACE", result.explain()
     assert ("raise it with reset_pose" in result.failure.message) is said
 

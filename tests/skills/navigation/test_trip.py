@@ -189,6 +189,24 @@ def test_where_there_is_no_other_way_it_tries_the_same_again(
     assert base.now() > 12.0
 
 
+def test_a_trip_without_recovery_leaves_no_base_held(
+    obedient: MakeObedient, run_move: RunMove
+) -> None:
+    base = _base(obedient, Pose2D(2.0, 3.0, 0.0))
+    held_at: list[float] = []
+
+    def hold() -> None:
+        base.stuck = base.pose().x > 3.5 and base.phases[-1:] == ["drive"]
+        if base.stuck:
+            base.v = 0.0
+            held_at.append(base.pose().x)
+
+    with pytest.raises(Failure, match="NO_PROGRESS"):
+        run_move(travel(base, _mppi(base), _to(Pose2D(6.0, 3.0, 0.0)), recovery=False), hold)
+    assert held_at[-1] - base.pose().x == pytest.approx(trip.BACK, abs=0.05)
+    assert base.stands()
+
+
 @pytest.mark.parametrize("belief", [Belief(sigma=0.3), Belief(quality=0.2), Belief(sigma=0.14)])
 def test_without_knowing_where_it_is_it_does_not_drive(
     obedient: MakeObedient, run_move: RunMove, belief: Belief

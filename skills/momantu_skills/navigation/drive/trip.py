@@ -31,6 +31,10 @@ LOCAL = 1.5
 """Distance from the goal below which the base uses manoeuvres instead of a planned path, m."""
 PATIENCE = (1.0, 3.0, 6.0)
 """Waiting times of successive recoveries, s: an obstacle may be moving away."""
+BACK = 0.3
+"""How far the base backs up from what holds it, m."""
+HELD = 1.0
+"""Time for which the collision guard has held the base, s, that is more than a moment."""
 WALK = 3.0
 """Goals that were measured from nearer than this, m, are kept in odom, which does not jump."""
 
@@ -62,7 +66,9 @@ def travel(
 ) -> Trip:
     """Drive to the destination; recover from failures where that is allowed.
 
-    quality: least fit of the newest scan to the map at the start.
+    Where it is not, a base that the collision guard holds backs up before it gives up: the guard
+    would hold it at the beginning of the next trip too. quality: least fit of the newest scan to
+    the map at the start.
 
     Raises:
         Failure: NOT_LOCALIZED, START_KEPT_OUT, GOAL_KEPT_OUT, GOAL_BLOCKED, NO_PATH, PATH_BLOCKED,
@@ -77,7 +83,10 @@ def travel(
             return
         except Failure as failure:
             if failure.code not in RECOVERABLE or attempt == attempts - 1:
+                held = vehicle.blocked_for > HELD
                 yield from vehicle.stop("give up")
+                if held and not recovery:
+                    yield from back_off(vehicle, BACK, "give up")
                 raise
             yield from _recover(vehicle, attempt)
             yield from be_sure(vehicle, quality)  # what blocks a lost base may stand elsewhere
@@ -221,7 +230,7 @@ def _recover(vehicle: Vehicle, attempt: int) -> Trip:
     vehicle.costmap.clear_ahead(vehicle.pose(), vehicle.sight.blind)
     vehicle.sense()
     if attempt >= 1:
-        yield from back_off(vehicle, 0.3, "recover")
+        yield from back_off(vehicle, BACK, "recover")
     if attempt >= 2:
         yield from turn_to(vehicle, vehicle.pose().yaw + 2.0, "recover")
     yield from vehicle.wait(PATIENCE[min(attempt, len(PATIENCE) - 1)], "recover")
