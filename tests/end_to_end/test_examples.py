@@ -308,14 +308,26 @@ def test_what_was_not_found_is_looked_for_from_elsewhere() -> None:
     report = go("explore_and_bring", script)
     assert report.status == "SUCCESS", report.failure
     assert script.given("explore", "share") == [90, 100]
-    assert script.given("navigate", "side")[:2] == [0, 1]
+    assert script.given("navigate", "side")[:2] == [0, 3]
+    assert script.given("reset_pose", "pose")[:2] == ["home", "home"]
     assert (report.blackboard["can_on"], report.blackboard["tag_on"]) == ("table_1", "table_1")
+
+
+def test_the_camera_is_raised_where_tables_are_high() -> None:
+    script = Script()
+    report = go("explore_and_bring", script, values={"highest": 1.1})
+    assert report.status == "SUCCESS", report.failure
+    assert script.given("reset_pose", "pose")[:2] == ["home", "ready"]
+    assert script.given("discover_surface", "highest")[0] == 1.1
 
 
 def test_a_building_without_the_can_is_told() -> None:
     script = Script(discover_surface=["NO_NEW_SURFACE", "NO_NEW_SURFACE"], explore=["NO_PATH"] * 3)
     report = go("explore_and_bring", script)
-    assert said(report, "NOT_FOUND_ANYWHERE") == "can on '', tag on ''"
+    assert said(report, "NOT_FOUND_ANYWHERE") == (
+        "looked on 0 tables, with tops 0.45 to 0.85 m high and at least 0.5 m wide: "
+        "the can stands on '' and tag 1 is on '', where '' means none"
+    )
     assert "pick" not in script.names()
 
 
