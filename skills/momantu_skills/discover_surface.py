@@ -310,10 +310,10 @@ class DiscoverSurface(Skill):
         refused = self.mapping.sightings.refused
         left = f"; the base did not get to {len(self._done)} places" if self._done else ""
         camera = self.frames.lookup(ODOM, robot.description.camera()[1].frame)
-        above = float(camera.position[2]) - OVER
-        if self.highest > above:
+        height = float(camera.position[2])
+        if self.highest > height - OVER and not robot.description.eye_in_hand:
             left += (
-                f"; tops above {above:.2f} m hardly show, as the camera is {above + OVER:.2f} m "
+                f"; tops above {height - OVER:.2f} m hardly show, as the camera is {height:.2f} m "
                 "high: raise it with reset_pose, and look again with `again: true`"
             )
         return Failure(

@@ -145,6 +145,19 @@ def test_what_laser_and_pictures_showed_goes_when_the_laser_meets_nothing(
     assert (costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0) is remains
 
 
+def test_a_map_that_grows_does_not_lose_what_stands_where_the_laser_does_not_look_now() -> None:
+    costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
+    costmap.see_laser(pose, _rays(0.15, 1.0))
+    costmap.see_depth(np.array([[1.02, 0.02, 0.7]]).repeat(5, axis=0), np.zeros((0, 2)), 0.3)
+    for _ in range(SURE):
+        costmap.see_laser(pose, _rays(0.02, 2.5))
+        costmap.see_laser(pose, _rays(0.15, 1.0))
+    costmap.use(_grid(), Pose2D(0.001, 0.0, 0.0))
+    costmap.see_laser(pose, _rays(0.02, 2.5))
+    costmap.refresh()
+    assert costmap.room(Pose2D(1.0, 0.0, 0.0), DISC) < 0.0
+
+
 def test_low_things_beside_somebody_stay_when_that_one_goes() -> None:
     costmap, pose = _costmap(), Pose2D(0.0, 0.0, 0.0)
     costmap.see_laser(pose, _rays(0.02, 1.1))

@@ -82,8 +82,9 @@ def travel(
             yield from _surely(vehicle, lambda: _go(vehicle, mppi, to), quality)
             return
         except Failure as failure:
-            if failure.code not in RECOVERABLE or attempt == attempts - 1:
-                held = vehicle.blocked_for > HELD
+            recoverable = failure.code in RECOVERABLE
+            if not recoverable or attempt == attempts - 1:
+                held = recoverable and vehicle.blocked_for > HELD
                 yield from vehicle.stop("give up")
                 if held and not recovery:
                     yield from back_off(vehicle, BACK, "give up")

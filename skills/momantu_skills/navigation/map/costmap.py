@@ -32,9 +32,9 @@ LOW, TALL, MET = 1, 2, 3
 """What a cell of the depth layer shows: something the laser looks over; something that is taller;
 something taller beside which the laser met something. The latter begins at `MET + SURE`, and each
 beam that later passes through the cell subtracts one."""
-MET_WITHIN, GONE_WITHIN = 0.25, 0.35
-"""Where the laser met something within this distance of a cell, it is the same thing; when it meets
-nothing within the other, m, the thing has gone. A person's legs lie that far inside the arms."""
+MET_WITHIN, GONE_WITHIN = 0.275, 0.35
+"""Where the laser met something within the first distance of a cell, m, it is the same thing; when
+it meets nothing within the other, that has gone. A person's legs lie that far inside the arms."""
 
 
 class Costmap:
@@ -94,7 +94,8 @@ class Costmap:
         new_from_old: how the map has moved where the robot is. What the laser saw is kept as long
         as neither that nor the raster changes; the map soon knows it too.
         """
-        marked = [(value, self._marked(value)) for value in np.unique(self._depth) if value]
+        self._depth[self._depth >= MET] = MET + SURE
+        marked = [(value, self._marked(value)) for value in (LOW, TALL, MET + SURE)]
         same = grid.cells.shape == self.grid.cells.shape and grid.origin == self.grid.origin
         laser = self._laser
         self._read(grid)
@@ -169,14 +170,17 @@ class Costmap:
     def _clear_gone(self) -> None:
         """Clear what pictures showed where the laser met something, and meets nothing any more."""
         passed = np.argwhere(self._depth == MET)
-        if not len(passed):
-            return
         passed = passed[self._from_known[tuple(passed.T)] > GONE_WITHIN]
-        met = np.argwhere(self._laser > 0)
-        if len(passed) and len(met):
-            off, _ = cKDTree(met).query(passed)
-            passed = passed[off * self.frame[2] > GONE_WITHIN]
-        self._depth[tuple(passed.T)] = 0
+        gone = passed[~self._met(passed, GONE_WITHIN)]
+        self._depth[tuple(gone.T)] = 0
+
+    def _met(self, cells: NDArray[np.int64], within: float) -> NDArray[np.bool_]:
+        """Which cells (n, 2), by row and column, the laser met something near; within: m."""
+        marks = np.argwhere(self._laser > 0) if len(cells) else cells
+        if not len(marks):
+            return np.zeros(len(cells), dtype=np.bool_)
+        off, _ = cKDTree(marks).query(cells)
+        return np.asarray(off * self.frame[2] <= within)
 
     def forget(self, places: Array, radius: float) -> None:
         """Clear what was seen within `radius` m of points (n, 2): it moves, or has gone."""
@@ -203,9 +207,9 @@ class Costmap:
         tall = self._counts(obstacles[obstacles[:, 2] > laser, :2]) > 0
         self._depth[bare & ~taken] = 0
         taken &= self.mapped_field > self._config.known_reach
-        met = clearance(self._laser > 0, self.grid.resolution) <= MET_WITHIN
-        shown = np.where(tall & met, MET + SURE, np.where(tall, TALL, LOW))
-        self._depth[taken] = shown[taken]
+        self._depth[taken] = np.where(tall[taken], TALL, LOW)
+        seen = np.argwhere(taken & tall)
+        self._depth[tuple(seen[self._met(seen, MET_WITHIN)].T)] = MET + SURE
 
     def low_things(self) -> Array:
         """Middles (n, 2) of the cells in which pictures show something below the laser's plane."""
