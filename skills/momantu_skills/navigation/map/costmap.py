@@ -92,16 +92,18 @@ class Costmap:
         """Take over the map as it has grown; what pictures showed is kept.
 
         new_from_old: how the map has moved where the robot is. What the laser saw is kept as long
-        as neither that nor the raster changes; the map soon knows it too.
+        as neither that nor the raster changes; the map soon knows it too. Where it is lost, only a
+        picture clears what pictures showed.
         """
-        self._depth[self._depth >= MET] = MET + SURE
-        marked = [(value, self._marked(value)) for value in (LOW, TALL, MET + SURE)]
         same = grid.cells.shape == self.grid.cells.shape and grid.origin == self.grid.origin
+        kept = same and new_from_old == Pose2D(0.0, 0.0)
+        self._depth[self._depth >= MET] = MET + SURE if kept else TALL
+        marked = [(value, self._marked(value)) for value in (LOW, TALL, MET + SURE)]
         laser = self._laser
         self._read(grid)
         self._laser = np.zeros(grid.cells.shape, dtype=np.uint8)
         self._depth = np.zeros(grid.cells.shape, dtype=np.uint8)
-        if same and new_from_old == Pose2D(0.0, 0.0):
+        if kept:
             self._laser = laser
             self._laser[self._from_known <= self._config.known_reach] = 0
         c, s = math.cos(new_from_old.yaw), math.sin(new_from_old.yaw)
